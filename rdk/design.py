@@ -1,0 +1,219 @@
+"""What an evaluation takes: a design, a mission scenario, and the coefficients of the models.
+
+All three are frozen dataclasses of numbers. A population is the same dataclass holding arrays; use
+`dataclasses.replace` to change a field.
+"""
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ._fields import Record, number
+from .terramechanics import Soil, Wheel
+
+
+class Variable(NamedTuple):
+    """One axis of the design space."""
+    low: float
+    high: float
+    unit: str
+    symbol: str
+    label: str
+    kind: str = "continuous"
+
+
+DESIGN_SPACE = {
+    "wheel_radius_m": Variable(0.05, 0.20, "m", "r", "wheel radius"),
+    "wheel_width_m": Variable(0.03, 0.20, "m", "b", "wheel width"),
+    "grouser_height_m": Variable(0.0, 0.020, "m", "h_g", "grouser height"),
+    "grouser_count": Variable(0, 24, "1", "N_g", "grouser count", "whole"),
+    "wheel_count": Variable(4, 6, "1", "N_w", "wheel count", "choice"),
+    "chassis_mass_kg": Variable(0.5, 50.0, "kg", "m_c", "chassis mass"),
+    "wheelbase_m": Variable(0.3, 1.2, "m", "L_wb", "wheelbase"),
+    "solar_area_m2": Variable(0.1, 1.5, "m2", "A_s", "solar array area"),
+    "battery_capacity_wh": Variable(5.0, 500.0, "Wh", "C_b", "battery capacity"),
+    "avionics_power_w": Variable(5.0, 40.0, "W", "P_a", "avionics power"),
+    "peak_wheel_torque_nm": Variable(0.05, 20.0, "N m", "T_hub", "peak hub torque"),
+}
+"""The eleven design variables with their search range (the paper's Table 1), unit, symbol and label."""
+
+
+@dataclass(frozen=True)
+class Design(Record):
+    """A rover design, or a population of them: the paper's eleven design variables.
+
+    Parameters
+    ----------
+    wheel_radius_m, wheel_width_m : float or ndarray
+        r, b in metres, positive.
+    grouser_height_m : float or ndarray
+        h_g in metres, zero or more.
+    grouser_count : int or ndarray
+        N_g on each wheel, a whole number, zero or more.
+    wheel_count : int or ndarray
+        4 (rigid) or 6 (rocker-bogie): stands for the mobility architecture.
+    chassis_mass_kg : float or ndarray
+        Structural mass m_c in kg, positive.
+    wheelbase_m : float or ndarray
+        In metres, positive. No model reads it: load transfer and tip-over are not modelled.
+    solar_area_m2, battery_capacity_wh, avionics_power_w, peak_wheel_torque_nm : float or ndarray
+        A_s, C_b, P_a and the peak hub torque of one wheel, positive.
+
+    Raises
+    ------
+    ValueError
+        If a value is outside these limits or not finite, or if array lengths disagree.
+    """
+    wheel_radius_m: float = number(above=0)
+    wheel_width_m: float = number(above=0)
+    grouser_height_m: float = number(0)
+    grouser_count: int = number(0, whole=True)
+    wheel_count: int = number(choices=(4, 6))
+    chassis_mass_kg: float = number(above=0)
+    wheelbase_m: float = number(above=0)
+    solar_area_m2: float = number(above=0)
+    battery_capacity_wh: float = number(above=0)
+    avionics_power_w: float = number(above=0)
+    peak_wheel_torque_nm: float = number(above=0)
+
+    @property
+    def wheel(self):
+        """The wheel of this design, for `rdk.terramechanics`."""
+        return Wheel(self.wheel_radius_m, self.wheel_width_m, self.grouser_height_m, self.grouser_count)
+
+
+@dataclass(frozen=True)
+class Scenario(Record):
+    """Where a rover drives, for how long, and what it must carry.
+
+    Parameters
+    ----------
+    name : str
+        A label; nothing is computed from it.
+    latitude_deg : float or ndarray
+        -90 to 90, north positive.
+    soil : Soil
+    duration_earth_days : float
+        Mission length in days of 24 h, positive; one number (it sets the number of time steps).
+    slope_deg : float or ndarray
+        Slope climbed throughout, above -90 and below 90 degrees.
+    duty_cycle : float or ndarray
+        Share of the time spent driving, 0 to 1.
+    traverse_limit_km : float or ndarray
+        The rover stops there; zero or more, infinity for no limit.
+    payload_mass_kg, payload_power_w : float or ndarray
+        Zero or more.
+    required_obstacle_height_m : float or ndarray
+        Obstacle that the rover must climb, zero or more.
+    panel_tilt_deg : float or ndarray
+        From the horizontal, 0 to 180.
+    panel_azimuth_deg : float or ndarray
+        Direction that the panel faces, clockwise from north, -360 to 360.
+
+    Raises
+    ------
+    ValueError
+        If a value is outside these limits, or if array lengths disagree.
+    """
+    name: str
+    latitude_deg: float = number(-90, 90)
+    soil: Soil
+    duration_earth_days: float = number(above=0, maximum=3660, scalar=True)
+    slope_deg: float = number(above=-90, below=90)
+    duty_cycle: float = number(0, 1)
+    traverse_limit_km: float = number(0, infinite=True, default=math.inf)
+    payload_mass_kg: float = number(0, default=0.0)
+    payload_power_w: float = number(0, default=0.0)
+    required_obstacle_height_m: float = number(0, default=0.0)
+    panel_tilt_deg: float = number(0, 180, default=0.0)
+    panel_azimuth_deg: float = number(-360, 360, default=180.0)
+
+    def __post_init__(self):
+        if not isinstance(self.soil, Soil):
+            raise ValueError(f"soil must be a Soil, such as rdk.soil('apollo-nominal'); got {self.soil!r}")
+        super().__post_init__()
+
+
+@dataclass(frozen=True)
+class Model(Record):
+    """Every coefficient of the models, with the paper's values as defaults; each a number or an array.
+
+    `data/constants.csv` gives unit, origin and source of each. Pass a changed copy to `evaluate`:
+    `evaluate(design, scenario, model=Model(drivetrain_efficiency=0.7))`.
+    """
+    # terramechanics
+    transition_c1: float = number(above=0, maximum=1, default=0.4)
+    transition_c2: float = number(0, 1, default=0.2)
+    grouser_lift_cap: float = number(0, default=0.6)
+    shear_scale: float = number(above=0, default=1.0)
+    slip_min: float = number(-1, 1, default=-0.9)
+    slip_max: float = number(-1, below=1, default=0.95)
+    slope_capability_slip: float = number(-1, 1, default=0.6)
+    slope_capability_limit_deg: float = number(0, below=90, default=35.0)
+    gravity_m_s2: float = number(above=0, default=1.625)
+    # mass
+    wheel_areal_density_kg_m2: float = number(0, default=8.0)
+    grouser_thickness_m: float = number(0, default=0.002)
+    grouser_density_kg_m3: float = number(0, default=2700.0)
+    motor_base_mass_kg: float = number(0, default=0.15)
+    motor_mass_per_torque_kg_nm: float = number(0, default=0.1)
+    solar_areal_density_kg_m2: float = number(0, default=2.5)
+    battery_specific_energy_wh_kg: float = number(above=0, default=120.0)
+    avionics_base_mass_kg: float = number(0, default=0.3)
+    avionics_mass_per_power_kg_w: float = number(0, default=0.05)
+    linkage_base_mass_kg: float = number(0, default=0.5)
+    linkage_chassis_fraction: float = number(0, default=0.08)
+    harness_fraction: float = number(0, default=0.08)
+    thermal_control_fraction: float = number(0, default=0.05)
+    growth_fraction: float = number(0, default=0.2)
+    # mobility
+    rigid_obstacle_ratio: float = number(0, default=0.5)
+    rocker_bogie_obstacle_ratio: float = number(0, default=1.25)
+    drivetrain_efficiency: float = number(above=0, maximum=1, default=0.8)
+    hub_no_load_speed_rad_s: float = number(above=0, infinite=True, default=5.0)
+    # power
+    solar_constant_w_m2: float = number(0, default=1361.0)
+    synodic_day_h: float = number(above=0, default=708.734136)
+    panel_efficiency: float = number(0, 1, default=0.28)
+    dust_factor: float = number(0, 1, default=0.9)
+    charge_efficiency: float = number(above=0, maximum=1, default=0.95)
+    discharge_efficiency: float = number(above=0, maximum=1, default=0.95)
+    soc_floor: float = number(0, 1, default=0.15)
+    soc_initial: float = number(0, 1, default=1.0)
+    time_step_h: float = number(above=0, default=1.0, scalar=True)
+    # thermal
+    enclosure_emissivity: float = number(above=0, maximum=1, default=0.85)
+    enclosure_absorptivity: float = number(0, 1, default=0.3)
+    enclosure_sunlit_fraction: float = number(0, 1, default=0.25)
+    enclosure_area_base_m2: float = number(0, default=0.05)
+    enclosure_area_coefficient_m2: float = number(0, default=0.02)
+    hibernation_power_w: float = number(0, default=2.0)
+    radioisotope_heater_power_w: float = number(0, default=0.0)
+    sink_temperature_hot_k: float = number(0, default=250.0)
+    sink_temperature_cold_k: float = number(0, default=100.0)
+    operating_temperature_min_c: float = number(default=-30.0)
+    operating_temperature_max_c: float = number(default=50.0)
+
+    def __post_init__(self):
+        super().__post_init__()
+        if np.any(np.asarray(self.transition_c1) + self.transition_c2 > 1):
+            raise ValueError("transition_c1 + transition_c2 must be at most 1; "
+                             f"got {self.transition_c1} + {self.transition_c2}")
+        if np.any(np.asarray(self.slip_min) >= self.slip_max):
+            raise ValueError(f"slip_min must be below slip_max; got {self.slip_min} and {self.slip_max}")
+        if np.any(np.asarray(self.enclosure_area_base_m2) + self.enclosure_area_coefficient_m2 <= 0):
+            raise ValueError("enclosure_area_base_m2 and enclosure_area_coefficient_m2 must not both be 0")
+
+
+def warn_outside(design, stacklevel=3):
+    """One UserWarning that names the variables of `design` outside DESIGN_SPACE, where the models are unchecked."""
+    outside = [f"{name} ({v.low:g} to {v.high:g} {v.unit})" for name, v in DESIGN_SPACE.items()
+               if np.min(getattr(design, name), initial=np.inf) < v.low * (1 - 1e-12)
+               or np.max(getattr(design, name), initial=-np.inf) > v.high * (1 + 1e-12)]
+    if outside:
+        warnings.warn("design outside the class that the models were checked on: " + ", ".join(outside),
+                      UserWarning, stacklevel=stacklevel)

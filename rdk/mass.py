@@ -1,0 +1,99 @@
+"""Bottom-up mass of a rover: line items from the design variables, then fractions, growth and payload.
+
+The rollup follows SMAD (2011) and AIAA S-120A: harness and thermal control are fractions of the subsystem mass,
+the growth allowance is applied to the dry bus, the payload is added last. Checked against five published totals of
+5 to 50 kg only: a matching total does not confirm the line items. No item covers steering actuators, deployment
+mechanisms, telecom or radioisotope heaters, so rovers above the class come out light.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ._fields import Record
+
+
+@dataclass(frozen=True)
+class MassBreakdown(Record):
+    """Line items in kg, each a number or an array; they add up to `total_kg`.
+
+    `linkage_kg` is the rocker-bogie suspension, zero for a rigid four-wheel layout; `growth_kg` the dry-mass growth
+    allowance.
+    """
+    chassis_kg: float
+    wheels_kg: float
+    motors_kg: float
+    solar_array_kg: float
+    battery_kg: float
+    avionics_kg: float
+    linkage_kg: float
+    harness_kg: float
+    thermal_control_kg: float
+    growth_kg: float
+    payload_kg: float
+    total_kg: float
+
+    @property
+    def items(self):
+        """Name and mass of every line item, the total left out."""
+        return {name: value for name, value in self.numbers().items() if name != "total_kg"}
+
+
+def mass_breakdown(*, wheel_radius_m, wheel_width_m, grouser_height_m, grouser_count, wheel_count, chassis_mass_kg,
+                   solar_area_m2, battery_capacity_wh, avionics_power_w, peak_wheel_torque_nm, payload_mass_kg=0.0,
+                   wheel_areal_density_kg_m2=8.0, grouser_thickness_m=0.002, grouser_density_kg_m3=2700.0,
+                   motor_base_mass_kg=0.15, motor_mass_per_torque_kg_nm=0.1, solar_areal_density_kg_m2=2.5,
+                   battery_specific_energy_wh_kg=120.0, avionics_base_mass_kg=0.3, avionics_mass_per_power_kg_w=0.05,
+                   linkage_base_mass_kg=0.5, linkage_chassis_fraction=0.08, harness_fraction=0.08,
+                   thermal_control_fraction=0.05, growth_fraction=0.2):
+    """Mass line items and total of a rover.
+
+    Parameters
+    ----------
+    wheel_radius_m, wheel_width_m, grouser_height_m : float or ndarray
+        r, b, h_g in metres.
+    grouser_count, wheel_count : int or ndarray
+        N_g on each wheel; N_w, 4 (rigid) or 6 (rocker-bogie).
+    chassis_mass_kg : float or ndarray
+        Structure m_c in kg.
+    solar_area_m2, battery_capacity_wh, avionics_power_w, peak_wheel_torque_nm : float or ndarray
+        A_s in m2, C_b in Wh, P_a in W, peak hub torque in N m per wheel.
+    payload_mass_kg : float or ndarray
+        In kg, added after growth.
+    wheel_areal_density_kg_m2 ... growth_fraction : float or ndarray
+        Coefficients; the defaults are those of the paper's release (see `data/constants.csv`).
+
+    Returns
+    -------
+    MassBreakdown
+        Line items and total in kg, with the broadcast shape of the inputs they depend on.
+
+    Notes
+    -----
+    Nothing is checked here: `Design`, `Scenario` and `Model` check their values. Any shapes that broadcast.
+
+    Examples
+    --------
+    >>> m = mass_breakdown(wheel_radius_m=0.1, wheel_width_m=0.08, grouser_height_m=0.015, grouser_count=14,
+    ...                    wheel_count=4, chassis_mass_kg=3.5, solar_area_m2=0.25, battery_capacity_wh=50,
+    ...                    avionics_power_w=15, peak_wheel_torque_nm=0.5, payload_mass_kg=1.5)
+    >>> f"{m.total_kg:.2f} kg"
+    '12.88 kg'
+    """
+    per_wheel = (wheel_areal_density_kg_m2 * 2 * np.pi * wheel_radius_m * wheel_width_m          # rim, hub, spokes
+                 + grouser_count * wheel_width_m * grouser_height_m * grouser_thickness_m * grouser_density_kg_m3)
+    wheels = wheel_count * per_wheel                                                             # eq. mass-wheels
+    motors = wheel_count * (motor_base_mass_kg + motor_mass_per_torque_kg_nm * peak_wheel_torque_nm)
+    array = solar_areal_density_kg_m2 * solar_area_m2
+    battery = battery_capacity_wh / battery_specific_energy_wh_kg
+    avionics = avionics_base_mass_kg + avionics_mass_per_power_kg_w * avionics_power_w
+    rocker_bogie = np.equal(wheel_count, 6)
+    linkage = (linkage_base_mass_kg + linkage_chassis_fraction * chassis_mass_kg) * rocker_bogie
+    subsystems = chassis_mass_kg + wheels + motors + array + battery + avionics + linkage        # eq. mass-subsystems
+    harness = harness_fraction * subsystems
+    thermal = thermal_control_fraction * (subsystems + harness)
+    dry = subsystems + harness + thermal                                                         # eq. mass-dry
+    growth = growth_fraction * dry
+    return MassBreakdown(chassis_mass_kg, wheels, motors, array, battery, avionics, linkage, harness, thermal, growth,
+                         payload_mass_kg, dry + growth + payload_mass_kg)                        # eq. mass-total

@@ -1,0 +1,136 @@
+"""Sunlight, panel power and the battery of a rover on the Moon.
+
+Closed-form solar geometry on a smooth sphere (Duffie & Beckman 2013): no horizon mask, no shadows, no libration.
+At the poles this keeps the low sun and leaves out what the terrain does to it, which may matter more.
+Azimuths run from north, clockwise: 0 north, 90 east, 180 south.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+HORIZON = 1e-12                                          # sin(elevation) below this is rounding, not sunlight
+
+
+def hour_angle_deg(time_h, synodic_day_h=708.734136):
+    """Hour angle at a time after local sunrise of a sun on the equator: -90 at 0, 0 at noon, in degrees.
+
+    Parameters
+    ----------
+    time_h, synodic_day_h : float or ndarray
+        Time since sunrise and length of the lunar day, in hours.
+    """
+    return 360 * np.asarray(time_h, float) / synodic_day_h - 90
+
+
+def _sun_vector(latitude_deg, hour_angle, declination_deg):
+    """East, north and up components of the direction to the sun."""
+    lat, H, dec = np.radians(latitude_deg), np.radians(hour_angle), np.radians(declination_deg)
+    east = -np.cos(dec) * np.sin(H)
+    north = np.cos(lat) * np.sin(dec) - np.sin(lat) * np.cos(dec) * np.cos(H)
+    up = np.sin(lat) * np.sin(dec) + np.cos(lat) * np.cos(dec) * np.cos(H)       # eq. sun-elevation
+    return east, north, up
+
+
+def sun_position(latitude_deg, hour_angle, declination_deg=0.0):
+    """Elevation and azimuth of the sun.
+
+    Parameters
+    ----------
+    latitude_deg, hour_angle, declination_deg : float or ndarray
+        In degrees; hour angle negative before noon.
+
+    Returns
+    -------
+    elevation_deg, azimuth_deg : float or ndarray
+        Elevation above the smooth horizon; azimuth clockwise from north, 0 to 360.
+
+    Examples
+    --------
+    >>> elevation, azimuth = sun_position(20.0, 0.0)
+    >>> f"{elevation:.0f} deg high, {azimuth:.0f} deg"
+    '70 deg high, 180 deg'
+    """
+    east, north, up = _sun_vector(latitude_deg, hour_angle, declination_deg)
+    return np.degrees(np.arcsin(np.clip(up, -1, 1))), np.degrees(np.arctan2(east, north)) % 360
+
+
+def incidence_factor(latitude_deg, hour_angle, tilt_deg=0.0, azimuth_deg=180.0, declination_deg=0.0):
+    """cos(i) on a tilted panel, eq. solar-incidence: 0 where the sun is down or behind the panel.
+
+    Parameters
+    ----------
+    latitude_deg, hour_angle, declination_deg : float or ndarray
+        As in `sun_position`.
+    tilt_deg, azimuth_deg : float or ndarray
+        Panel tilt from the horizontal and the direction it faces, in degrees.
+
+    Returns
+    -------
+    float or ndarray
+        Between 0 and 1.
+    """
+    east, north, up = _sun_vector(latitude_deg, hour_angle, declination_deg)
+    tilt, azimuth = np.radians(tilt_deg), np.radians(azimuth_deg)
+    cos_i = up * np.cos(tilt) + np.sin(tilt) * (north * np.cos(azimuth) + east * np.sin(azimuth))
+    return np.where(up > HORIZON, np.maximum(cos_i, 0.0), 0.0)[()]
+
+
+def panel_power(area_m2, incidence, *, efficiency=0.28, dust_factor=0.9, solar_constant_w_m2=1361.0):
+    """Electrical power of the array in W, eq. solar-power: S_0 A eta d max(0, cos i).
+
+    Parameters
+    ----------
+    area_m2 : float or ndarray
+        A_s in m2.
+    incidence : float or ndarray
+        cos(i), from `incidence_factor`.
+    efficiency, dust_factor : float or ndarray
+        eta_s and d_s, 0 to 1.
+    solar_constant_w_m2 : float or ndarray
+        S_0 in W/m2.
+    """
+    return solar_constant_w_m2 * efficiency * dust_factor * area_m2 * incidence
+
+
+def march_battery(net_power_w, time_step_h, capacity_wh, *, soc_initial=1.0, soc_floor=0.15, charge_efficiency=0.95,
+                  discharge_efficiency=0.95):
+    """Stored energy after each time step, eq. battery-update, clamped between the floor and a full pack.
+
+    Surplus at full charge is discarded; demand on the floor is not served. (The traverse throttles driving there,
+    which cannot lift the charge above the floor: the march does not depend on it.)
+
+    Parameters
+    ----------
+    net_power_w : ndarray, shape (steps, ...)
+        Power into the pack in each step, in W; overwritten, and returned as the result.
+    time_step_h : float or ndarray, shape (steps, ...)
+        Length of the steps in hours.
+    capacity_wh, soc_initial, soc_floor, charge_efficiency, discharge_efficiency : float or ndarray, shape (...)
+        Capacity in Wh; the others are fractions.
+
+    Returns
+    -------
+    ndarray, shape (steps, ...)
+        Stored energy in Wh at the end of each step.
+    """
+    energy = net_power_w
+    energy *= np.where(energy >= 0, charge_efficiency, 1 / np.asarray(discharge_efficiency))
+    energy *= time_step_h
+    lanes = energy.shape[1:]
+    floor = np.broadcast_to(np.asarray(soc_floor) * capacity_wh, lanes)
+    full = np.broadcast_to(np.asarray(capacity_wh, float), lanes)
+    stored = np.clip(np.broadcast_to(np.asarray(soc_initial) * capacity_wh, lanes), floor, full)
+    if energy[0].size == 1:                              # one rover: plain floats are faster than arrays of one
+        low, high, charge, march = floor.item(), full.item(), stored.item(), []
+        for change in energy.ravel().tolist():
+            charge = min(max(charge + change, low), high)
+            march.append(charge)
+        energy[...] = np.reshape(march, energy.shape)
+        return energy
+    add, minimum, maximum = np.add, np.minimum, np.maximum
+    for step in energy:                                  # a running clamp: the one loop over time there is
+        add(step, stored, out=step)
+        maximum(step, floor, out=step)
+        minimum(step, full, out=step)
+        stored = step
+    return energy
