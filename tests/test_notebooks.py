@@ -1,0 +1,124 @@
+"""The form of the committed notebooks: executed, clean, short, linked. nbval compares their outputs."""
+
+import re
+import statistics
+from pathlib import Path
+
+import nbformat
+import pytest
+
+REPO = Path(__file__).parents[1]
+PATHS = sorted((REPO / "notebooks").glob("[0-9][0-9]_*.ipynb"))
+SECTIONS = ["You will be able to", "You need first", "minutes", "What you learned", "References"]
+
+
+def tags(cell):
+    return cell.metadata.get("tags", [])
+
+
+def lines(cell):
+    return [line for line in cell.source.splitlines() if line.strip()]
+
+
+def stated_minutes(path):
+    source = "\n".join(cell.source for cell in nbformat.read(path, as_version=4).cells[:3])
+    return re.search(r"Time:\W*(\d+) minutes", source)[1]
+
+
+@pytest.fixture(params=PATHS, ids=lambda path: path.name)
+def path(request):
+    return request.param
+
+
+@pytest.fixture
+def notebook(path):
+    found = nbformat.read(path, as_version=4)
+    nbformat.validate(found)
+    return found
+
+
+@pytest.fixture
+def code(notebook):
+    return [cell for cell in notebook.cells if cell.cell_type == "code" and cell.source.strip()]
+
+
+@pytest.fixture
+def prose(notebook):
+    return "\n\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+
+
+def test_the_collection_is_numbered_without_gaps():
+    assert [int(path.name[:2]) for path in PATHS] == list(range(len(PATHS))) and PATHS
+
+
+def test_executed_in_order_and_clean(path, notebook, code):
+    assert notebook.metadata.kernelspec.name == "python3" and "widgets" not in notebook.metadata
+    counts = [cell.execution_count for cell in code]
+    assert counts == list(range(1, len(code) + 1)), f"run: python notebooks/execute.py {path.name}"
+    for cell in code:
+        kinds = [output.output_type for output in cell.outputs]
+        assert "error" not in kinds or "raises-exception" in tags(cell), cell.source
+        assert "stderr" not in [output.get("name") for output in cell.outputs], cell.source
+
+
+def test_sources_are_plain_python(code):
+    for cell in code:
+        assert not re.search(r"^(%%|!)", cell.source, re.M), "a magic: " + cell.source
+        assert not cell.source.rstrip().endswith(";"), "nbval ignores ';', use plt.show(): " + cell.source
+
+
+def test_cells_are_short(code):
+    counts = [len(lines(cell)) for cell in code if "solution" not in tags(cell)]
+    assert statistics.median(counts) <= 5
+    assert sum(count > 15 for count in counts) <= 0.1 * len(counts)
+    assert max(counts) <= 25
+
+
+def test_small_enough_to_open_anywhere(path):
+    assert path.stat().st_size < 1_500_000
+
+
+def test_asserts_something(code):
+    assert any(re.search(r"^\s*assert\b", cell.source, re.M) for cell in code if "solution" not in tags(cell))
+
+
+def test_solutions_are_collapsed_and_check_themselves(code):
+    for cell in code:
+        if "solution" in tags(cell):
+            assert cell.metadata.get("jupyter", {}).get("source_hidden") is True, cell.source
+            assert re.search(r"\bassert", cell.source), "a solution shows that it is one: " + cell.source
+
+
+def test_every_picture_is_followed_by_words(notebook):
+    cells = notebook.cells
+    for cell, following in zip(cells, cells[1:] + [None]):
+        if any("image/png" in output.get("data", {}) for output in cell.get("outputs", [])):
+            assert following is not None and following.cell_type == "markdown", cell.source
+
+
+def test_anatomy(path, notebook, prose):
+    assert notebook.cells[0].cell_type == "markdown"
+    assert re.match(rf"# {path.name[:2]}\b", notebook.cells[0].source), "the title starts with the number"
+    assert not [section for section in SECTIONS if section.lower() not in prose.lower()]
+
+
+def test_links_resolve(path, prose):
+    targets = re.findall(r"\]\(([^)\s]+)\)", prose)
+    local = [target.partition("#")[0] for target in targets if not re.match(r"[a-z]+:|#", target)]
+    assert not [target for target in local if not (path.parent / target).exists()]
+    at = PATHS.index(path)
+    neighbours = {other.name for other in PATHS[max(at - 1, 0):at + 2]} - {path.name}
+    assert neighbours <= set(local), "link the previous and the next notebook"
+
+
+def test_cited_dois_are_in_the_bibliography(prose):
+    bibliography = (REPO / "data/references.bib").read_text(encoding="utf-8")
+    known = {doi.lower() for doi in re.findall(r"doi\s*=\s*\{([^}]+)\}", bibliography)}
+    cited = {doi.rstrip(".,;:").lower() for doi in re.findall(r"\b10\.\d{4,9}/[^\s)\]>\"`]+", prose)}
+    assert cited <= known, sorted(cited - known)
+
+
+def test_readme_lists_the_collection_with_its_minutes():
+    readme = (REPO / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| \[(\d\d_\w+)\]\(notebooks/\1\.ipynb\) \|.*\| (\d+) \|$", readme, re.M)
+    assert rows == [(path.stem, stated_minutes(path)) for path in PATHS]
