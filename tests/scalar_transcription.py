@@ -103,7 +103,7 @@ def contact_integrals(theta_1, wheel, soil, slip, model, quadrature):
 
 
 def wheel_forces(wheel, soil, vertical_load_n, slip, model=MODEL, quadrature="trapezoid"):
-    """Solve F_z(theta_1) = F_z* over (0, pi/2) by Brent's method; all NaN where the wheel is buried."""
+    """Solve F_z(theta_1) = F_z* over (0, pi/2) by Brent's method; NaN where the wheel is buried."""
     def surplus(theta_1):
         return contact_integrals(theta_1, wheel, soil, slip, model, quadrature)[0] - vertical_load_n
     try:
@@ -143,9 +143,11 @@ def slip_balance(wheel, soil, load_n, pull_n, model=MODEL, quadrature="trapezoid
 
 def slope_capability_deg(wheel, soil, weight_n, model=MODEL, quadrature="trapezoid"):
     """Steepest slope on which the pull at slip 0.6 carries the weight component; weight_n is per wheel."""
+    slip = model["slope_slip"]
+
     def surplus(slope_deg):
         load, pull = weight_n * cos(radians(slope_deg)), weight_n * sin(radians(slope_deg))
-        return wheel_forces(wheel, soil, load, model["slope_slip"], model, quadrature)["drawbar_pull_n"] - pull
+        return wheel_forces(wheel, soil, load, slip, model, quadrature)["drawbar_pull_n"] - pull
     if not surplus(0.0) > 0.0:                       # also where the wheel is buried
         return 0.0
     if surplus(model["slope_limit_deg"]) >= 0.0:
@@ -166,12 +168,12 @@ def total_mass_kg(design, scenario, model=MODEL):
                 * model["grouser_thickness_m"] * model["grouser_density_kg_m3"])
     m_w = n_w * (model["wheel_areal_density_kg_m2"] * 2.0 * pi * r * b + grousers)      # Eq. (mass-wheels)
     m_m = n_w * (model["motor_base_kg"] + model["motor_kg_per_nm"] * design["peak_wheel_torque_nm"])
-    m_s = model["array_kg_m2"] * design["solar_area_m2"]                 # Eq. (mass-power-avionics), three terms
+    m_s = model["array_kg_m2"] * design["solar_area_m2"]              # Eq. (mass-power-avionics)
     m_b = design["battery_capacity_wh"] / model["battery_wh_kg"]
     m_a = model["avionics_base_kg"] + model["avionics_kg_per_w"] * design["avionics_power_w"]
     m_c = design["chassis_mass_kg"]
     m_arch = model["linkage_base_kg"] + model["linkage_fraction"] * m_c if n_w == 6 else 0.0
-    m_sub = m_c + m_w + m_m + m_s + m_b + m_a + m_arch                                  # Eq. (mass-subsystems)
+    m_sub = m_c + m_w + m_m + m_s + m_b + m_a + m_arch                     # Eq. (mass-subsystems)
     with_harness = m_sub + model["harness_fraction"] * m_sub
     m_dry = with_harness + model["thermal_fraction"] * with_harness                     # Eq. (mass-dry)
     return m_dry + model["growth_fraction"] * m_dry + scenario["payload_mass_kg"]       # Eq. (mass-total)
@@ -268,7 +270,7 @@ def traverse(design, scenario, mobility_w, speed_m_s, model=MODEL):
 
 
 def evaluate(design, scenario, model=MODEL, quadrature="trapezoid"):
-    """The whole chain for one design in one scenario. A buried wheel gives NaN mobility and counts as stalled."""
+    """The whole chain, one design in one scenario. A buried wheel has NaN mobility and is stalled."""
     n_w, wheel, soil = design["wheel_count"], wheel_of(design), scenario["soil"]
     mass = total_mass_kg(design, scenario, model)
     weight_n, slope = mass * model["gravity_m_s2"] / n_w, radians(scenario["slope_deg"])
