@@ -75,7 +75,7 @@ def test_no_committed_file_names_a_machine_or_a_registry():
     if listed.returncode:
         pytest.skip("not a git clone")
     home = r"(?<![\w.])/(work|root|tmp|home|Users)/"  # an absolute path: not a part of an address
-    registry = r"index.url\s*[=:]|find.links\s*[=:]|://\S*/simple/"
+    registry = r"index.url\s*[=:]|find.links\s*[=:]|://\S*/simple[/]"
     for name in filter(None, listed.stdout.split("\0")):
         path = REPO / name
         if path.is_file():
