@@ -116,8 +116,8 @@ def entry_angle(patch, s, target, with_pull):
         # beyond the far end: look there once, since a wheel that does not hold there is buried
         new = np.where(inside, newton, np.where((newton >= high) & (high == _HALF_PI) & (low < _HALF_PI), _HALF_PI,
                                                 (low + high) / 2))
-        gone = (low == _HALF_PI) & ~done                 # not carried at 90 degrees
-        done |= high - low < 1e-14
+        gone = low == _HALF_PI                           # not carried at 90 degrees: buried
+        done = (done | (high - low < 1e-14)) & ~gone
         if done.any() or gone.any():
             result[lane[done]] = np.where(inside, newton, theta)[done]
             keep = ~(done | gone)
