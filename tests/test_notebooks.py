@@ -22,7 +22,9 @@ def lines(cell):
 
 def stated_minutes(path):
     source = "\n".join(cell.source for cell in nbformat.read(path, as_version=4).cells[:3])
-    return re.search(r"Time:\W*(\d+) minutes", source)[1]
+    found = re.search(r"Time:\W*(\d+) minutes", source)
+    assert found, f"{path.name} states no 'Time: N minutes' in its first cells"
+    return found[1]
 
 
 @pytest.fixture(params=PATHS, ids=lambda path: path.name)
