@@ -11,7 +11,8 @@ import rdk
 
 DATA = Path(__file__).parents[1] / "data"
 ROWS = {"soils.csv": 11, "scenarios.csv": 14, "rovers.csv": 13, "flown.csv": 2, "single_wheel.csv": 27,
-        "constants.csv": 58, "paper_targets.csv": 69}
+        "constants.csv": 58, "paper_targets.csv": 69, "studies.csv": 4,
+        "uncertainties.csv": 17}
 UNITS = {"_deg": "deg", "_kn_m_n1": "kN/m^(n+1)", "_kn_m_n2": "kN/m^(n+2)", "_kpa": "kPa", "_mm": "mm",
          "_kg_m3": "kg/m3", "_kg": "kg", "_km": "km", "_days": "Earth days", "_w": "W", "_wh": "Wh",
          "_nm": "N m", "_m2": "m2", "_n": "N", "_m": "m", "_c": "degC"}
@@ -76,10 +77,10 @@ def test_header_and_length(name):
 def test_unit_is_the_suffix_of_the_name(name, column):
     unit, kind, _, _ = SCHEMA[name][column]
     suffix = next((s for s in sorted(UNITS, key=len, reverse=True) if column.endswith(s)), None)
-    if kind in ("number", "integer", "range") and column != "value":
-        assert unit == (UNITS[suffix] if suffix else "1")
-    elif column != "value":
+    if kind not in ("number", "integer", "range"):
         assert unit == ""
+    elif "`" not in unit:  # `...` names the column that tells the unit
+        assert unit == (UNITS[suffix] if suffix else "1")
 
 
 @pytest.mark.parametrize("name, column", CELLS)
@@ -175,6 +176,18 @@ def test_paper_values_lie_in_their_own_bands():
             assert float(band[1]) <= float(row["paper_value"]) <= float(band[2]), row["id"]
             checked += 1
     assert checked > 30
+
+
+def test_studies_and_uncertainties_speak_of_what_exists():
+    metrics = {field.name for field in dataclasses.fields(rdk.Performance)}
+    for row in TABLES["studies.csv"]:
+        goals = [re.fullmatch(r"(\w+):(max|min)", goal)[1] for goal in entries(row["objectives"])]
+        limits = [re.fullmatch(r"(\w+) [<>]= [\d.]+", limit)[1] for limit in entries(row["constraints"])]
+        assert set(goals + limits) <= metrics and len(goals) >= 2
+    for row in TABLES["uncertainties.csv"]:
+        assert row["name"] in {field.name for field in dataclasses.fields(getattr(rdk, row["record"].title()))}
+        low, high, unchanged = float(row["low"]), float(row["high"]), {"factor": 1, "offset": 0}[row["kind"]]
+        assert low < high and low <= unchanged <= high
 
 
 def test_model_defaults_are_the_constants_of_the_table():
