@@ -50,7 +50,8 @@ def _allowed(limits):
                   f"below {limits['below']:g}" if limits["below"] is not None else
                   f"at most {high:g}" if high < math.inf else ""]
         span = " and ".join(filter(None, bounds))
-    return " and ".join(filter(None, [kind, span, "" if limits["infinite"] else "finite"]))
+    words = ", ".join(filter(None, [kind, span]))
+    return words if kind or limits["infinite"] else " and ".join(filter(None, [words, "finite"]))
 
 
 def check(name, value, minimum=-math.inf, maximum=math.inf, *, above=None, below=None, whole=False, choices=None,
@@ -78,9 +79,11 @@ def check(name, value, minimum=-math.inf, maximum=math.inf, *, above=None, below
         good &= np.isin(array, choices)
     if not good.all():
         if not array.ndim:
-            raise ValueError(refusal + f"{array.item()!r}")
+            raise ValueError(refusal + repr(value))
         first = tuple(int(i) for i in np.argwhere(~good)[0])
         raise ValueError(refusal + f"{array[first].item()!r} at index {first[0] if len(first) == 1 else first}")
+    if whole or choices:
+        array = array.astype(int)
     return array if array.ndim else array.item()
 
 

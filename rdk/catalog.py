@@ -8,7 +8,7 @@ import csv
 import functools
 from pathlib import Path
 
-from .design import Design, Scenario
+from .design import Design, Scenario, Study
 from .terramechanics import Soil
 
 DATA = Path(__file__).resolve().parent.parent / "data"
@@ -141,7 +141,25 @@ def scenario(name):
     values = _numbers(row, _SCENARIO, "scenarios.csv", name)
     latitude = values["latitude_deg"]
     return Scenario(name=name, soil=soil(row["soil"]), panel_tilt_deg=min(80.0, abs(latitude)),
-                    panel_azimuth_deg=0.0 if latitude < 0 else 180.0, **values)
+                    panel_azimuth_deg=0.0 if latitude < 0 else 180.0, study=study(name), **values)
+
+
+def study(name):
+    """How the paper poses a scenario to the optimiser, from `data/studies.csv`; the defaults where it does not."""
+    for row in _rows("studies.csv", DATA):
+        if row["scenario"] == name:
+            break
+    else:
+        return Study()
+    try:
+        return Study(
+            objectives=dict(item.split(":") for item in row["objectives"].split(";")),
+            constraints=tuple((field, sign, float(limit)) for field, sign, limit in
+                              (item.split(" ") for item in row["constraints"].split(";"))),
+            traverse_limit_km=float(row["traverse_limit_km"]) if row["traverse_limit_km"] else None,
+            seed=int(row["seed"]))
+    except (KeyError, ValueError) as error:
+        raise ValueError(f"studies.csv is damaged: row of {name!r}: {error}") from None
 
 
 def rover(name):

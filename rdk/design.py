@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -87,6 +87,28 @@ class Design(Record):
 
 
 @dataclass(frozen=True)
+class Study:
+    """How a scenario is posed to the optimiser; the defaults are the paper's for its traverse missions.
+
+    Parameters
+    ----------
+    objectives : dict of str to str
+        Performance fields with a direction, "max" or "min".
+    constraints : tuple of (str, str, float)
+        Performance field, ">=" or "<=", and limit.
+    traverse_limit_km : float, optional
+        Replaces the scenario's own limit during the search.
+    seed : int, optional
+        Seed of the paper's run.
+    """
+    objectives: dict = field(default_factory=lambda: {"range_km": "max", "total_mass_kg": "min",
+                                                      "slope_capability_deg": "max"})
+    constraints: tuple = (("range_km", ">=", 0.1),)
+    traverse_limit_km: float | None = None
+    seed: int | None = None
+
+
+@dataclass(frozen=True)
 class Scenario(Record):
     """Where a rover drives, for how long, and what it must carry.
 
@@ -113,6 +135,8 @@ class Scenario(Record):
         From the horizontal, 0 to 180.
     panel_azimuth_deg : float or ndarray
         Direction that the panel faces, clockwise from north, -360 to 360.
+    study : Study
+        How `pareto_front` poses the mission when it is told nothing else.
 
     Raises
     ------
@@ -131,6 +155,7 @@ class Scenario(Record):
     required_obstacle_height_m: float = number(0, default=0.0)
     panel_tilt_deg: float = number(0, 180, default=0.0)
     panel_azimuth_deg: float = number(-360, 360, default=180.0)
+    study: Study = field(default_factory=Study, repr=False)
 
     def __post_init__(self):
         if not isinstance(self.soil, Soil):
@@ -212,8 +237,8 @@ class Model(Record):
 def warn_outside(design, stacklevel=3):
     """One UserWarning that names the variables of `design` outside DESIGN_SPACE, where the models are unchecked."""
     outside = [f"{name} ({v.low:g} to {v.high:g} {v.unit})" for name, v in DESIGN_SPACE.items()
-               if np.min(getattr(design, name), initial=np.inf) < v.low * (1 - 1e-12)
-               or np.max(getattr(design, name), initial=-np.inf) > v.high * (1 + 1e-12)]
+               if np.any(np.asarray(getattr(design, name)) < v.low * (1 - 1e-12))
+               or np.any(np.asarray(getattr(design, name)) > v.high * (1 + 1e-12))]
     if outside:
         warnings.warn("design outside the class that the models were checked on: " + ", ".join(outside),
                       UserWarning, stacklevel=stacklevel)
