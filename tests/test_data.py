@@ -185,7 +185,8 @@ def test_studies_and_uncertainties_speak_of_what_exists():
         limits = [re.fullmatch(r"(\w+) [<>]= [\d.]+", limit)[1] for limit in entries(row["constraints"])]
         assert set(goals + limits) <= metrics and len(goals) >= 2
     for row in TABLES["uncertainties.csv"]:
-        assert row["name"] in {field.name for field in dataclasses.fields(getattr(rdk, row["record"].title()))}
+        record = getattr(rdk, row["record"].title())
+        assert row["name"] in {field.name for field in dataclasses.fields(record)}
         low, high, unchanged = float(row["low"]), float(row["high"]), {"factor": 1, "offset": 0}[row["kind"]]
         assert low < high and low <= unchanged <= high
 
