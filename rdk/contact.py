@@ -130,6 +130,10 @@ def entry_angle(patch, s, target, with_pull):
 def slope(patch, slip, theta_1, limit_deg):
     """Slope in degrees from the entry angle at the capability slip; 0 for buried lanes and where there is no pull."""
     load, pull, _ = forces(theta_1, slip, patch)
+    deep = np.flatnonzero(theta_1 > 0.7)                 # might be buried on the flat, where the load is largest
+    if deep.size:
+        flat = forces(np.full(deep.size, _HALF_PI), slip[deep], patch[:, deep])[0]
+        load[deep[flat < np.hypot(load[deep], pull[deep])]] = np.nan
     return np.where(load > 0, np.clip(np.degrees(np.arctan2(pull, load)), 0, limit_deg), 0.0)
 
 
@@ -164,7 +168,9 @@ def slip_balance(patch, load, required, low, high, theta_high):
     if free.size:                                        # surplus at both ends: the wheel rolls without slip
         theta[free] = entry_angle(patch[:, free], slip[free], load[free], np.zeros(free.size))
     _, pull, torque = forces(theta, slip, patch)
-    return slip, pull, torque, patch[0] * (1 - np.cos(theta)), theta, stalled, buried
+    buried = np.isnan(pull)                              # also where the soil gives way inside the slip interval
+    slip[buried] = np.nan
+    return slip, pull, torque, patch[0] * (1 - np.cos(theta)), theta, stalled | buried, buried
 
 
 def _newton_balance(patch, load, required, low, high, theta):

@@ -83,7 +83,7 @@ class Performance(Record):
     feasible : bool or ndarray
         Neither stalled nor buried, energy balance not negative, range above 0, required obstacle climbed.
     buried : bool or ndarray
-        No entry angle carries the load: sinkage and torque are NaN.
+        No entry angle carries the load: slip, sinkage and torque are NaN.
     slip, sinkage_m, wheel_torque_nm : float or ndarray
         At the slip balance on the scenario slope.
     cruise_speed_m_s : float or ndarray
