@@ -162,7 +162,7 @@ def sweep(design, scenario, over, model=Model()):
     >>> mare = rdk.scenario("equatorial_mare_traverse")
     >>> s = sweep(rdk.rover("Rashid-1"), mare, {"slope_deg": [0, 10, 20]})
     >>> s.performance.slip.round(2)
-    array([0.13, 0.28, 0.48])
+    array([0.09, 0.26, 0.5 ])
     """
     if not isinstance(over, dict) or not 1 <= len(over) <= 2:
         raise ValueError(f"over must be a dictionary of one or two fields with their values; got {over!r}")
