@@ -62,7 +62,10 @@ def check(name, value, minimum=-math.inf, maximum=math.inf, *, above=None, below
     refusal = f"{name} must be {_allowed(limits)}; got "
     if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
         raise ValueError(refusal + repr(value))
-    array = np.asarray(value)
+    try:
+        array = np.asarray(value)
+    except ValueError:                                   # nested lists of unequal length
+        raise ValueError(refusal + repr(value)) from None
     if array.dtype.kind not in "iuf":
         raise ValueError(refusal + repr(value))
     array = array.astype(float)                          # a copy: the caller's array may change later

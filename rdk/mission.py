@@ -250,7 +250,7 @@ def cruise_speed(average_solar_power_w, base_load_w, wheel_count, wheel_torque_n
         paid_for = np.asarray(duty_cycle) * torque
         energy_speed = np.where(paid_for > 0, surplus * rolling_radius * drivetrain_efficiency / paid_for, free)
         speed = np.minimum(energy_speed, hub_no_load_speed_rad_s * rolling_radius)
-        power_w = np.where(speed > 0, torque * speed / rolling_radius / drivetrain_efficiency, 0.0)
+        power_w = np.where(np.isfinite(speed), torque * speed / rolling_radius / drivetrain_efficiency, 0.0)
     return speed, energy_speed, power_w
 
 
@@ -319,7 +319,7 @@ def _march(lane, times, steps, with_log):
         driven_h, mobility_h = driven_h - steps @ lost, mobility_h - samples @ lost
     generated = sun * (samples @ incidence)
     consumed = base_load * samples.sum() + mobility * mobility_h
-    found = dict(range_km=np.minimum(3.6 * speed * driven_h, lane["traverse_limit_km"]),
+    found = dict(range_km=np.minimum(np.where(driven_h > 0, 3.6 * speed * driven_h, 0.0), lane["traverse_limit_km"]),
                  energy_balance_pct=100 * (generated - consumed) / consumed, cruise_speed_m_s=speed,
                  energy_balance_speed_m_s=energy_speed, hub_speed_limited=moving & (speed < energy_speed),
                  average_solar_power_w=average, final_soc=stored[-1] / capacity,
@@ -328,7 +328,7 @@ def _march(lane, times, steps, with_log):
         return found, None
     driving = np.where(throttled, _solar_duty(solar, base_load, mobility, duty), duty)
     return found, _log(lane, times, steps, solar, base_load, driving * mobility, stored, initial, throttled,
-                       3.6 * speed * driving)
+                       np.where(driving > 0, 3.6 * speed * driving, 0.0))
 
 
 def _solar_duty(solar, base_load, mobility, duty):
