@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import functools
 from pathlib import Path
 
@@ -18,6 +19,8 @@ _SCENARIO = ("latitude_deg", "duration_earth_days", "slope_deg", "duty_cycle", "
              "payload_power_w")
 _DESIGN = ("wheel_radius_m", "wheel_width_m", "grouser_height_m", "grouser_count", "wheel_count", "chassis_mass_kg",
            "wheelbase_m", "solar_area_m2", "battery_capacity_wh", "avionics_power_w", "peak_wheel_torque_nm")
+_KEYS = {"soils.csv": ("soil",), "scenarios.csv": ("scenario", "kind", "soil"),
+         "rovers.csv": ("rover", "use"), "studies.csv": ("scenario",)}
 
 
 @functools.cache
@@ -33,6 +36,10 @@ def _rows(file_name, folder):
         raise ValueError(f"{file_name} is damaged: {error}") from None
     if len(lines) < 2:
         raise ValueError(f"{file_name} is damaged: it needs a header and at least one row, has {len(lines)} lines")
+    for key in _KEYS.get(file_name, ()):
+        if key not in lines[0]:
+            first = ",".join(lines[0])[:60]
+            raise ValueError(f"{file_name} is damaged: no column {key!r}; its first line is {first!r}")
     for i, line in enumerate(lines[1:], 2):
         if len(line) != len(lines[0]):
             raise ValueError(f"{file_name} is damaged: line {i} has {len(line)} values, the header {len(lines[0])}")
@@ -57,7 +64,8 @@ def table(file_name):
     return pd.read_csv(DATA / file_name, keep_default_na=False, na_values=[""])
 
 
-def _numbers(row, names, file_name, label):
+def _read(kind, row, names, file_name, label, **more):
+    """A `kind` (Soil, Scenario or Design) from the named numbers of a row; errors name file and row."""
     values = {}
     for name in names:
         try:
@@ -66,13 +74,16 @@ def _numbers(row, names, file_name, label):
             raise ValueError(f"{file_name} is damaged: no column {name!r}") from None
         except ValueError:
             raise ValueError(f"{file_name} is damaged: {name} of {label!r} is {row[name]!r}, not a number") from None
-    return values
+    try:
+        return kind(**values, **more)
+    except ValueError as error:
+        raise ValueError(f"{file_name} is damaged: row of {label!r}: {error}") from None
 
 
 def _pick(file_name, kind, key, name):
-    found = {row.get(key): row for row in _rows(file_name, DATA)}
+    found = {row[key]: row for row in _rows(file_name, DATA)}
     if name not in found:
-        raise ValueError(f"no {kind} {name!r}; choose from {', '.join(map(str, found))}")
+        raise ValueError(f"no {kind} {name!r}; choose from {', '.join(found)}")
     return found[name]
 
 
@@ -116,7 +127,7 @@ def soil(name):
     >>> soil("apollo-loose").friction_angle_deg
     30.0
     """
-    return Soil(**_numbers(_pick("soils.csv", "soil", "soil", name), _SOIL, "soils.csv", name), name=name)
+    return _read(Soil, _pick("soils.csv", "soil", "soil", name), _SOIL, "soils.csv", name, name=name)
 
 
 def scenario(name):
@@ -138,10 +149,12 @@ def scenario(name):
     80.0
     """
     row = _pick("scenarios.csv", "scenario", "scenario", name)
-    values = _numbers(row, _SCENARIO, "scenarios.csv", name)
-    latitude = values["latitude_deg"]
-    return Scenario(name=name, soil=soil(row["soil"]), panel_tilt_deg=min(80.0, abs(latitude)),
-                    panel_azimuth_deg=0.0 if latitude < 0 else 180.0, study=study(name), **values)
+    if row["soil"] not in soil_names():
+        raise ValueError(f"scenarios.csv is damaged: row of {name!r}: no soil {row['soil']!r} in soils.csv")
+    flat = _read(Scenario, row, _SCENARIO, "scenarios.csv", name, name=name, soil=soil(row["soil"]),
+                 study=study(name))
+    return dataclasses.replace(flat, panel_tilt_deg=min(80.0, abs(flat.latitude_deg)),
+                               panel_azimuth_deg=0.0 if flat.latitude_deg < 0 else 180.0)
 
 
 def study(name):
@@ -180,7 +193,7 @@ def rover(name):
     >>> rover("Rashid-1").wheel_radius_m
     0.1
     """
-    return Design(**_numbers(rover_row(name), _DESIGN, "rovers.csv", name))
+    return _read(Design, rover_row(name), _DESIGN, "rovers.csv", name)
 
 
 def rover_row(name):
