@@ -1,0 +1,665 @@
+"""The evidence: the models against measurement, and every number of the paper against ours, as pandas tables.
+
+Errors are signed, in percent of what was measured or published: positive where the model is above it. Every table is
+computed when asked for, from the files in `data/`; nothing here is fitted to them.
+"""
+from __future__ import annotations
+
+import dataclasses
+import functools
+import re
+import warnings
+
+import numpy as np
+import pandas as pd
+
+from . import catalog, power
+from ._fields import check
+from .design import Model
+from .mass import mass_breakdown
+from .mission import _MASS_COEFFICIENTS as MASS_COEFFICIENTS
+from .mission import evaluate
+from .terramechanics import Soil, Wheel, wheel_forces
+
+QUANTITIES = {"drawbar_pull_n": "N", "sinkage_mm": "mm", "torque_nm": "N m"}
+"""What a single-wheel test measures, with its unit."""
+MASS_ITEMS = ("chassis_kg", "wheels_kg", "motors_kg", "solar_array_kg", "battery_kg", "avionics_kg", "linkage_kg",
+              "harness_kg", "thermal_control_kg", "growth_kg", "payload_kg")
+
+
+def error_pct(model, reference):
+    """Signed error in percent of the size of the reference; NaN where the reference is zero or missing."""
+    reference = np.asarray(reference, float)
+    return 100 * (np.asarray(model) - reference) / np.where(reference == 0, np.nan, abs(reference))
+
+
+# ---- wheels on soil -------------------------------------------------------------------------------------------
+
+def single_wheel_conditions(points=None):
+    """Wheel, soil, load and slip of single-wheel tests, ready for `wheel_forces(*conditions)`.
+
+    Parameters
+    ----------
+    points : pandas.DataFrame, optional
+        Rows of `single_wheel.csv`; all of them by default.
+
+    Returns
+    -------
+    Wheel, Soil, ndarray, ndarray
+        One lane a row; load in N, slip as a ratio.
+    """
+    points = catalog.table("single_wheel.csv") if points is None else points
+    wheel = Wheel(points.wheel_radius_mm / 1000, points.wheel_width_mm / 1000, points.grouser_height_mm / 1000,
+                  points.grouser_count)
+    soils = {name: catalog.soil(name).numbers() for name in points.soil.unique()}
+    soil = Soil(**{field: [soils[name][field] for name in points.soil] for field in next(iter(soils.values()))})
+    return wheel, soil, points.vertical_load_n.to_numpy(float), points.slip.to_numpy(float)
+
+
+def _forces(conditions, kernel):
+    """The kernel's answer in the units of the measurements."""
+    forces = wheel_forces(*conditions, **kernel)
+    return {"drawbar_pull_n": forces.drawbar_pull_n, "sinkage_mm": 1000 * forces.sinkage_m,
+            "torque_nm": forces.torque_nm}
+
+
+def single_wheel(**kernel):
+    """Model against measurement at every point of the single-wheel tests.
+
+    Parameters
+    ----------
+    **kernel : float
+        Options of `wheel_forces`, such as `shear_scale`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a point: experiment, wheel, soil, vertical_load_n, slip, and for each of drawbar_pull_n, sinkage_mm and
+        torque_nm the measured value, the model's (`model_...`) and the signed error in percent (`..._error_pct`; NaN
+        where nothing, or zero, was measured). One call of `wheel_forces` computes them all.
+    """
+    points = catalog.table("single_wheel.csv")
+    model = _forces(single_wheel_conditions(points), kernel)
+    table = points[["experiment", "wheel", "soil", "vertical_load_n", "slip"]].copy()
+    for quantity in QUANTITIES:
+        table[quantity], table["model_" + quantity] = points[quantity], model[quantity]
+        table[_stem(quantity) + "_error_pct"] = error_pct(model[quantity], points[quantity])
+    return table
+
+
+def _stem(quantity):
+    """drawbar_pull, sinkage, torque."""
+    return quantity.rpartition("_")[0]
+
+
+def single_wheel_summary(points=None):
+    """What the errors of the single-wheel tests come to, per experiment and quantity.
+
+    The paper's medians are those of |error| in percent over all points of an experiment, both wheels together, the
+    points at zero slip and of negative pull included: that choice reproduces its six figures.
+
+    Parameters
+    ----------
+    points : pandas.DataFrame, optional
+        As returned by `single_wheel`, or some of its rows.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row an experiment and quantity: points with an error, median_abs_error_pct, median_error_pct (signed),
+        over_predicted (how many points), largest_abs_error_pct, median_abs_error and its unit, and
+        median_abs_error_of_load_pct (pull only: error in percent of the load).
+    """
+    points = single_wheel() if points is None else points
+    rows = []
+    for experiment, group in points.groupby("experiment", sort=False):
+        for quantity, unit in QUANTITIES.items():
+            group_error = group[_stem(quantity) + "_error_pct"]
+            known = group_error.notna()
+            error, residual = group_error[known], (group["model_" + quantity] - group[quantity])[known]
+            load = group.vertical_load_n[known]
+            rows.append(dict(
+                experiment=experiment, quantity=_stem(quantity), points=int(known.sum()),
+                median_abs_error_pct=error.abs().median(), median_error_pct=error.median(),
+                over_predicted=int((error > 0).sum()), largest_abs_error_pct=error.abs().max(),
+                median_abs_error=residual.abs().median(), unit=unit,
+                median_abs_error_of_load_pct=(100 * residual / load).abs().median() if unit == "N" else np.nan))
+    table = pd.DataFrame(rows)
+    return table[table.points > 0].reset_index(drop=True)
+
+
+def single_wheel_curves(slip, **kernel):
+    """The kernel's curves through the single-wheel tests.
+
+    Parameters
+    ----------
+    slip : array_like, shape (n,)
+        Slip ratios.
+    **kernel : float
+        Options of `wheel_forces`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a test (experiment and wheel) and slip: experiment, wheel, soil, slip, model_drawbar_pull_n,
+        model_sinkage_mm, model_torque_nm.
+    """
+    tests = catalog.table("single_wheel.csv").drop_duplicates(["experiment", "wheel"])
+    slip = np.atleast_1d(check("slip", slip, -1, 1))
+    lanes = tests.loc[tests.index.repeat(len(slip))].assign(slip=np.tile(slip, len(tests))).reset_index(drop=True)
+    model = _forces(single_wheel_conditions(lanes), kernel)
+    return lanes[["experiment", "wheel", "soil", "slip"]].assign(**{"model_" + q: model[q] for q in QUANTITIES})
+
+
+def bootstrap_medians(reading_error_n=0.5, reading_error_m=1e-3, reading_error_nm=0.1, *, resample_points=False,
+                      samples=2000, seed=0):
+    """What an error in reading the points off printed figures does to the medians of |error|.
+
+    Every measured value is read again `samples` times with a normal error; the model stays as it is. That is a
+    parametric bootstrap. With `resample_points`, each sample also draws its points with replacement: what another
+    choice of points could have given.
+
+    Parameters
+    ----------
+    reading_error_n, reading_error_m, reading_error_nm : float
+        Standard deviation of the reading of drawbar pull (N), sinkage (m) and torque (N m), zero or more.
+    resample_points : bool
+        Draw the points of an experiment with replacement as well.
+    samples : int
+        How many, 1 or more.
+    seed : int, optional
+        Same seed, same table.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row an experiment and quantity: points, median_abs_error_pct as printed, and low_pct, median_pct, high_pct:
+        the 5, 50 and 95 % points of that median over the samples.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range.
+    """
+    sigma = dict(zip(QUANTITIES, (check("reading_error_n", reading_error_n, 0, scalar=True),
+                                  1000 * check("reading_error_m", reading_error_m, 0, scalar=True),
+                                  check("reading_error_nm", reading_error_nm, 0, scalar=True))))
+    samples = int(check("samples", samples, 1, whole=True, scalar=True))
+    rng, points, rows = np.random.default_rng(seed), single_wheel(), []
+    for experiment, group in points.groupby("experiment", sort=False):
+        for quantity, spread in sigma.items():
+            group_known = group[group[_stem(quantity) + "_error_pct"].notna()]
+            if group_known.empty:
+                continue
+            measured, model = (group_known[name].to_numpy() for name in (quantity, "model_" + quantity))
+            read = measured + spread * rng.standard_normal((samples, len(measured)))
+            error = abs(error_pct(model, read))
+            if resample_points:
+                error = np.take_along_axis(error, rng.integers(0, len(measured), error.shape), 1)
+            low, median, high = np.percentile(np.median(error, 1), [5, 50, 95])
+            rows.append(dict(experiment=experiment, quantity=_stem(quantity), points=len(measured),
+                             median_abs_error_pct=np.median(abs(error_pct(model, measured))), low_pct=low,
+                             median_pct=median, high_pct=high))
+    return pd.DataFrame(rows)
+
+
+def pull_shift(shear_scale=(0.70, 0.85, 1.15, 1.30)):
+    """How far the pull of the tested wheels moves when the kernel's shear stress is scaled.
+
+    Taken over the measured points with positive slip and positive nominal pull, as the paper's robustness study does.
+
+    Parameters
+    ----------
+    shear_scale : array_like, shape (n,)
+        Factors on the shear stress, positive.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a factor: shear_scale, median_shift_pct (of |DP(scale) / DP - 1|), points.
+    """
+    scale = np.atleast_1d(check("shear_scale", shear_scale, above=0))
+    conditions = single_wheel_conditions()
+    pull = wheel_forces(*conditions, shear_scale=np.append(1.0, scale)[:, None]).drawbar_pull_n
+    used = (conditions[3] > 0) & (pull[0] > 0)
+    shift = 100 * abs(pull[1:, used] / pull[0, used] - 1)
+    return pd.DataFrame(dict(shear_scale=scale, median_shift_pct=np.median(shift, 1), points=int(used.sum())))
+
+
+def load_transfer(design, scenario, height_to_wheelbase=0.4, slope_deg=25.0, slip=0.6, model=Model()):
+    """Change of a rover's total pull when a slope shifts weight to the lower axle at fixed total mass.
+
+    Axles are evenly spaced. On two axles the loads are w (1 +- 2 (h/L) tan(slope)) with w the mean wheel load, on
+    three w (1 +- 3 (h/L) tan(slope)) at the ends and w in the middle; all wheels turn at the same slip.
+
+    Parameters
+    ----------
+    design : Design
+    scenario : Scenario
+        Gives the soil and the payload.
+    height_to_wheelbase : float or ndarray
+        h / L, zero or more.
+    slope_deg : float or ndarray
+        0 to below 90 degrees.
+    slip : float or ndarray
+        Slip at which the pull is taken.
+    model : Model
+
+    Returns
+    -------
+    float or ndarray
+        In percent of the pull with equal loads; NaN where that is not positive or an axle lifts off.
+    """
+    ratio = check("height_to_wheelbase", height_to_wheelbase, 0)
+    slope = np.radians(check("slope_deg", slope_deg, 0, below=90))
+    six = np.equal(design.wheel_count, 6)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)     # designs outside the class are the caller's choice
+        mass = evaluate(design, scenario, model).total_mass_kg
+    load = mass * model.gravity_m_s2 * np.cos(slope) / design.wheel_count
+    shift = np.where(six, 3.0, 2.0) * ratio * np.tan(slope)
+    factors = [np.ones_like(shift), 1 + shift, np.where(shift < 1, 1 - shift, 1.0)]
+    even, lower, upper = (wheel_forces(
+        design.wheel, scenario.soil, load * f, slip, transition_c1=model.transition_c1,
+        transition_c2=model.transition_c2, grouser_lift_cap=model.grouser_lift_cap,
+        shear_scale=model.shear_scale).drawbar_pull_n for f in factors)
+    ends = np.where(six, 1 / 3, 1 / 2)                   # share of the wheels on each end axle
+    change = 100 * (ends * (lower + upper - 2 * even)) / even
+    return np.where((even > 0) & (shift < 1), change, np.nan)[()]
+
+
+# ---- masses ---------------------------------------------------------------------------------------------------
+
+def constant(name):
+    """The value of a row of `constants.csv`, those of studies included."""
+    values = {row["name"]: row["value"] for row in catalog.rows("constants.csv")}
+    if name not in values:
+        raise ValueError(f"no constant {name!r} in constants.csv")
+    return float(values[name])
+
+
+def anchor_torque_nm(published_mass_kg, wheel_count, wheel_radius_m, gravity_m_s2=Model.gravity_m_s2):
+    """Hub torque of a rover that publishes none: margin x pull coefficient x lunar weight per wheel x wheel radius."""
+    return (constant("torque_anchor_margin") * constant("torque_anchor_coefficient") * published_mass_kg * gravity_m_s2
+            / wheel_count * wheel_radius_m)
+
+
+def _published(model):
+    """Rows of the mass check and their mass breakdown; fields of `model` broadcast against the rovers (last axis)."""
+    rovers = catalog.table("rovers.csv").query("use == 'mass check'").reset_index(drop=True)
+    anchored = anchor_torque_nm(rovers.published_mass_kg, rovers.wheel_count, rovers.wheel_radius_m)
+    rovers["peak_wheel_torque_nm"] = rovers.peak_wheel_torque_nm.fillna(anchored)
+    sizes = ("wheel_radius_m", "wheel_width_m", "grouser_height_m", "grouser_count", "wheel_count", "chassis_mass_kg",
+             "solar_area_m2", "battery_capacity_wh", "avionics_power_w", "peak_wheel_torque_nm", "payload_mass_kg")
+    return rovers, mass_breakdown(**{name: rovers[name].to_numpy(float) for name in sizes},
+                                  **{name: getattr(model, name) for name in MASS_COEFFICIENTS})
+
+
+def published_masses(model=Model()):
+    """Bottom-up mass against published mass, rover by rover, with the line items.
+
+    Parameters
+    ----------
+    model : Model
+        Its mass coefficients are used, each a single number.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a rover: rover, in_class, wheel_count, published_mass_kg, predicted_mass_kg, error_pct, the line items
+        in kg, peak_wheel_torque_nm (anchored where none is published), and fixed_overhead_kg and fixed_overhead_pct:
+        what does not shrink with the rover (motor and avionics base masses, fixed linkage), grossed up by harness,
+        thermal control and growth, in kg and in percent of the published mass.
+    """
+    rovers, mass = _published(model)
+    table = rovers[["rover", "in_class", "wheel_count", "published_mass_kg"]].copy()
+    table["predicted_mass_kg"] = mass.total_kg
+    table["error_pct"] = error_pct(mass.total_kg, rovers.published_mass_kg)
+    for item in MASS_ITEMS:
+        table[item] = getattr(mass, item)
+    table["peak_wheel_torque_nm"] = rovers.peak_wheel_torque_nm
+    gross = (1 + model.harness_fraction) * (1 + model.thermal_control_fraction) * (1 + model.growth_fraction)
+    table["fixed_overhead_kg"] = gross * (
+        rovers.wheel_count * model.motor_base_mass_kg + model.avionics_base_mass_kg
+        + (rovers.wheel_count == 6) * model.linkage_base_mass_kg)
+    table["fixed_overhead_pct"] = 100 * table.fixed_overhead_kg / rovers.published_mass_kg
+    return table
+
+
+def published_masses_summary(masses=None):
+    """Median and mean |error| of the predicted masses.
+
+    Parameters
+    ----------
+    masses : pandas.DataFrame, optional
+        As returned by `published_masses`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Rows "in class" (5 to 50 kg, the paper's figures) and "all": rovers, median_abs_error_pct, mean_abs_error_pct,
+        mean_error_pct (signed), largest_abs_error_pct, and rank_correlation of signed error with published mass.
+    """
+    masses = published_masses() if masses is None else masses
+    rows = []
+    for label, group in ("in class", masses[masses.in_class.astype(bool)]), ("all", masses):
+        size = group.error_pct.abs()
+        rows.append(dict(rovers_included=label, rovers=len(group), median_abs_error_pct=size.median(),
+                         mean_abs_error_pct=size.mean(), mean_error_pct=group.error_pct.mean(),
+                         largest_abs_error_pct=size.max(),
+                         rank_correlation=group.error_pct.rank().corr(group.published_mass_kg.rank())))
+    return pd.DataFrame(rows)
+
+
+def mass_sensitivity(change_pct=20.0, model=Model()):
+    """What a change of one mass coefficient at a time does to the published-mass table.
+
+    Parameters
+    ----------
+    change_pct : float
+        Relative change of each coefficient, in percent, above -100.
+    model : Model
+        Where the changes start.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a coefficient: coefficient, value, changed_value, median_abs_error_pct over the in-class rovers, and the
+        change of each rover's total in percent, one column a rover.
+    """
+    change = check("change_pct", change_pct, above=-100, scalar=True) / 100
+    names = MASS_COEFFICIENTS
+    scale = 1 + change * np.vstack([np.zeros(len(names)), np.eye(len(names))])           # row 0: nothing changed
+    rovers, mass = _published(dataclasses.replace(
+        model, **{name: getattr(model, name) * scale[:, [k]] for k, name in enumerate(names)}))
+    total, inside = mass.total_kg, rovers.in_class.to_numpy(bool)
+    error = abs(error_pct(total, rovers.published_mass_kg))[1:, inside]
+    value = np.array([getattr(model, name) for name in names])
+    table = pd.DataFrame(dict(coefficient=names, value=value, changed_value=value * (1 + change),
+                              median_abs_error_pct=np.median(error, 1)))
+    return table.join(pd.DataFrame(100 * (total[1:] / total[0] - 1), columns=list(rovers.rover)))
+
+
+# ---- flown rovers ---------------------------------------------------------------------------------------------
+
+def peak_solar_power_w(panel_area_m2, latitude_deg, cell_efficiency=None, clean_array=True):
+    """Noon power of a new horizontal array, by the paper's stack of panel factors.
+
+    Parameters
+    ----------
+    panel_area_m2, latitude_deg : float or ndarray
+    cell_efficiency : float or ndarray, optional
+        `flown_cell_efficiency` of `constants.csv` (0.30) by default.
+    clean_array : bool
+        Count the optical loss of a clean array (0.98).
+
+    Returns
+    -------
+    float or ndarray
+        In W.
+    """
+    cell = constant("flown_cell_efficiency") if cell_efficiency is None else cell_efficiency
+    stack = [constant("flown_" + name) for name in ("packing_factor", "electrical_efficiency", "temperature_derate")]
+    return power.panel_power(panel_area_m2, power.incidence_factor(latitude_deg, 0.0), efficiency=cell * np.prod(stack),
+                             dust_factor=constant("flown_clean_array_factor") if clean_array else 1.0)
+
+
+def flown_rovers():
+    """Peak solar power, survival of the lunar night and range envelope of the rovers that flew, against record.
+
+    The panel lies flat. Power is given with and without the optical loss of a clean array: the paper counts it for
+    Pragyan and leaves it out for Yutu-2. The enclosure (area, absorptivity, heaters, limits) is that of `flown.csv`,
+    largely imputed. The range stops at the scenario's traverse limit; `unlimited_range_km` lifts that limit.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a rover: rover; published_peak_w with its band published_low_w, published_high_w; peak_w (no optical
+        loss), clean_peak_w and its sweep over cell efficiency, clean_peak_low_w and clean_peak_high_w;
+        clean_error_pct; implied_derate (published / peak_w); hot_temperature_c, cold_temperature_c,
+        survives (model), survived (record); range_m, published_traverse_m, unlimited_range_km.
+    """
+    flown = catalog.table("flown.csv")
+    rows = []
+    for row in flown.itertuples():                       # missions of different length cannot share one march
+        model = Model(enclosure_area_base_m2=row.enclosure_area_m2, enclosure_area_coefficient_m2=0.0,
+                      enclosure_absorptivity=row.absorptivity, radioisotope_heater_power_w=row.rhu_power_w,
+                      hibernation_power_w=row.hibernation_power_w,
+                      operating_temperature_max_c=row.max_operating_temp_c)
+        mission = dataclasses.replace(catalog.scenario(row.mission), panel_tilt_deg=0.0)
+        limits = dataclasses.replace(mission, traverse_limit_km=[mission.traverse_limit_km, np.inf])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)             # Yutu-2 is outside the class, and meant to be
+            result = evaluate(catalog.rover(row.rover), limits, model)
+        site = row.panel_area_m2, row.landing_latitude_deg
+        peak, clean = peak_solar_power_w(*site, clean_array=False), peak_solar_power_w(*site)
+        low, high = (peak_solar_power_w(*site, constant("flown_cell_efficiency_" + end)) for end in ("low", "high"))
+        rows.append(dict(
+            rover=row.rover, published_peak_w=row.peak_solar_w, published_low_w=row.peak_solar_low_w,
+            published_high_w=row.peak_solar_high_w, peak_w=peak, clean_peak_w=clean, clean_peak_low_w=low,
+            clean_peak_high_w=high, clean_error_pct=error_pct(clean, row.peak_solar_w).item(),
+            implied_derate=row.peak_solar_w / peak, hot_temperature_c=result.hot_temperature_c[0],
+            cold_temperature_c=result.cold_temperature_c[0], survives=bool(result.thermal_survival[0]),
+            survived=bool(row.survives_lunar_night), range_m=1000 * result.range_km[0],
+            published_traverse_m=row.traverse_published_m, unlimited_range_km=result.range_km[1]))
+    return pd.DataFrame(rows)
+
+
+# ---- the paper's numbers --------------------------------------------------------------------------------------
+
+_LEDGER = {}
+
+
+def _row(*ids):
+    """Register a function of the evidence as the computation of ledger rows; with several ids it also gets the id."""
+    def register(function):
+        for name in ids:
+            _LEDGER[name] = functools.partial(function, id=name) if len(ids) > 1 else function
+        return function
+    return register
+
+
+class _Evidence:
+    """The tables behind the ledger, each computed once when first needed."""
+
+    @functools.cached_property
+    def single_wheel(self):
+        return single_wheel_summary().set_index(["experiment", "quantity"])
+
+    @functools.cached_property
+    def masses(self):
+        return published_masses()
+
+    @functools.cached_property
+    def mass_summary(self):
+        return published_masses_summary(self.masses).set_index("rovers_included").loc["in class"]
+
+    @functools.cached_property
+    def flown(self):
+        return flown_rovers().set_index("rover")
+
+    @functools.cached_property
+    def fronts(self):
+        """The four canonical fronts at the paper's budget and seeds, by scenario name."""
+        from . import tradespace                         # loads pymoo
+        fronts = tradespace.study([catalog.scenario(name) for name in catalog.scenario_names("canonical")])
+        return {case.scenario.name: front for case, front in fronts.items()}
+
+
+_EXPERIMENTS = {"ding": "ding-2011", "hurrell": "hurrell-2025", "wang": "wang-han-2016"}
+_ROVERS = {"tenacious": "Tenacious", "cadre": "CADRE-unit", "rashid": "Rashid-1", "sojourner": "Sojourner",
+           "pragyan": "Pragyan", "yutu2": "Yutu-2", "marsokhod": "MARSOKHOD"}
+
+
+@_row("dp_ding", "dp_hurrell", "dp_wang", "z_ding", "z_hurrell", "z_wang")
+def _wheel_median(evidence, id):
+    quantity, source = id.split("_")
+    row = evidence.single_wheel.loc[_EXPERIMENTS[source], {"dp": "drawbar_pull", "z": "sinkage"}[quantity]]
+    note = ""
+    if quantity == "z" and row.over_predicted * 2 >= row.points:
+        note = f"the sign matters: the kernel sinks too far at {row.over_predicted} of {row.points} points"
+    return row.median_abs_error_pct, note
+
+
+@_row("z_kls1_mm")
+def _kls1_sinkage(evidence):
+    solved = single_wheel().query("soil == 'kls-1'").model_sinkage_mm
+    return solved.median(), f"median over the points; they span {solved.min():.1f} to {solved.max():.1f} mm"
+
+
+@_row(*(f"mass_{name}" for name in _ROVERS))
+def _mass(evidence, id):
+    return evidence.masses.set_index("rover").predicted_mass_kg[_ROVERS[id.removeprefix("mass_")]]
+
+
+@_row("mass_median", "mass_mean")
+def _mass_error(evidence, id):
+    return evidence.mass_summary[id.removeprefix("mass_") + "_abs_error_pct"]
+
+
+@_row("solar_pragyan_w")
+def _solar_pragyan(evidence):
+    return evidence.flown.clean_peak_w["Pragyan"], "with the 0.98 of a clean array"
+
+
+@_row("solar_pragyan_band_w")
+def _solar_pragyan_band(evidence):
+    row = evidence.flown.loc["Pragyan"]
+    return (row.clean_peak_low_w, row.clean_peak_high_w), "with the 0.98 of a clean array"
+
+
+@_row("solar_yutu2_w")
+def _solar_yutu2(evidence):
+    row = evidence.flown.loc["Yutu-2"]
+    return row.peak_w, f"without the 0.98 that Pragyan's figure has; with it {row.clean_peak_w:.1f} W"
+
+
+@_row("derate_yutu2")
+def _derate_yutu2(evidence):
+    row = evidence.flown.loc["Yutu-2"]
+    with_loss = row.published_peak_w / row.clean_peak_w
+    return row.implied_derate, f"{with_loss:.3f} against an array that counts the 0.98, as Pragyan's does"
+
+
+@_row("night_pragyan", "night_yutu2")
+def _night(evidence, id):
+    return bool(evidence.flown.survives[_ROVERS[id.removeprefix("night_")]])
+
+
+@_row("range_pragyan_m", "range_yutu2_m")
+def _range(evidence, id):
+    row = evidence.flown.loc[_ROVERS[id.split("_")[1]]]
+    return row.range_m, f"the scenario's traverse limit; without it the envelope is {row.unlimited_range_km:.1f} km"
+
+
+@_row("shear_shift_15", "shear_shift_30")
+def _shear_shift(evidence, id):
+    change = int(id[-2:]) / 100
+    down, up = pull_shift([1 - change, 1 + change]).median_shift_pct
+    return (down + up) / 2, (f"mean of the two sides: {down:.1f} % at {1 - change:.2f}, {up:.1f} % at "
+                             f"{1 + change:.2f}; the paper's figure is the upper side")
+
+
+@_row("load_transfer_pct")
+def _load_transfer(evidence):
+    largest = max(abs(load_transfer(front.designs, front.scenario)).max() for front in evidence.fronts.values())
+    tenacious = load_transfer(catalog.rover("Tenacious"), catalog.scenario("highland_slope_capability"))
+    return largest, (f"largest change over the four fronts; where the pull is nearly used up it is far more: "
+                     f"{tenacious:.0f} % for Tenacious on apollo-loose")
+
+
+_BOUND = re.compile(r"(>=|<=|<|>)?\s*(-?[\d.]+?)(?:\.\.(-?[\d.]+))?$")
+_COMPARE = {">=": np.greater_equal, "<=": np.less_equal, "<": np.less, ">": np.greater}
+
+
+def accepts(accept, value):
+    """Whether a value is inside a band of `paper_targets.csv`.
+
+    Parameters
+    ----------
+    accept : str
+        "low..high"; a bound such as "<= 0.20"; a number or a word, to be met exactly; several parts joined by ";",
+        each starting with "max" or "min", for the largest and smallest value; "report ours ...", which nothing can
+        fail. What follows " or " is not a bound.
+    value : float, bool, str or sequence of float
+        All of a sequence must be inside, unless a part says max or min.
+
+    Returns
+    -------
+    bool or None
+        None where nothing is asked but to report.
+
+    Raises
+    ------
+    ValueError
+        If `accept` cannot be read.
+
+    Examples
+    --------
+    >>> accepts("26.5..27.7", 27.1), accepts("max 80; min < 8", (0.9, 80.0)), accepts("False", True)
+    (True, True, False)
+    """
+    text = accept.partition(" or ")[0].strip()
+    if text.startswith("report ours"):
+        return None
+    if ";" in text:
+        return all(accepts(part, value) for part in text.split(";"))
+    if text in ("True", "False") or isinstance(value, (bool, np.bool_)):
+        return isinstance(value, (bool, np.bool_)) and str(bool(value)) == text
+    if text.isalpha() or isinstance(value, str):
+        return value == text
+    values = np.asarray(value, float)
+    which, _, rest = text.partition(" ")
+    if which in ("max", "min"):
+        text, values = rest, getattr(values, which)()
+    bound = _BOUND.match(text)
+    if not bound or (bound[1] and bound[3]):
+        raise ValueError(f"accept must be a range, a bound or a word; got {accept!r}")
+    low = float(bound[2])
+    if bound[3]:
+        inside = (values >= low) & (values <= float(bound[3]))
+    elif bound[1]:
+        inside = _COMPARE[bound[1]](values, low)
+    else:
+        inside = np.isclose(values, low, rtol=1e-6, atol=0)
+    return bool(np.all(inside))
+
+
+def paper_ledger(kinds=("deterministic",)):
+    """Every number that the paper reports beside ours, computed afresh.
+
+    Parameters
+    ----------
+    kinds : sequence of str
+        Which rows of `paper_targets.csv`: "deterministic", "stochastic" or "cost".
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a number: id, section, quantity, paper (as printed), ours (a number, flag, word or (low, high)), agrees
+        (NA where the row asks only for our value), why (a sentence where they disagree, or where agreement hides
+        something).
+
+    Raises
+    ------
+    ValueError
+        If a kind is unknown.
+    NotImplementedError
+        If a row has no computation.
+    """
+    targets = catalog.table("paper_targets.csv")
+    known = list(dict.fromkeys(targets.kind))
+    for kind in kinds:
+        if kind not in known:
+            raise ValueError(f"kinds must be among {', '.join(known)}; got {kind!r}")
+    targets = targets[targets.kind.isin(list(kinds))]
+    missing = [name for name in targets.id if name not in _LEDGER]
+    if missing:
+        raise NotImplementedError("no computation for the ledger rows " + ", ".join(missing))
+    evidence, rows = _Evidence(), []
+    for target in targets.itertuples():
+        found = _LEDGER[target.id](evidence)
+        ours, why = found if isinstance(found, tuple) and isinstance(found[-1], str) else (found, "")
+        rows.append(dict(id=target.id, section=target.paper_section, quantity=target.quantity,
+                         paper=str(target.paper_value), ours=ours, agrees=accepts(str(target.accept), ours), why=why))
+    return pd.DataFrame(rows).astype({"agrees": "boolean", "ours": object})
