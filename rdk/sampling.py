@@ -56,17 +56,19 @@ def random_designs(count, seed=None, bounds=None):
 def _limits(bounds):
     """Lower and upper limits of the eleven variables."""
     limits = {name: (v.low, v.high) for name, v in DESIGN_SPACE.items()}
+    if bounds is not None and not isinstance(bounds, dict):
+        raise ValueError(f"bounds must be a dictionary of variables with pairs (low, high); got {bounds!r}")
+    rules = {f.name: f.metadata for f in dataclasses.fields(Design)}
     for name, pair in (bounds or {}).items():
         if name not in limits:
             raise ValueError(f"bounds: no design variable {name!r}; choose from {', '.join(limits)}")
-        try:
-            low, high = (check(f"bounds of {name}", x, scalar=True) for x in pair)
-        except TypeError:
-            raise ValueError(f"bounds of {name} must be a pair (low, high); got {pair!r}") from None
+        if np.shape(pair) != (2,):
+            raise ValueError(f"bounds of {name} must be a pair (low, high); got {pair!r}")
+        low, high = (check(f"bounds of {name}", x, **rules[name]) for x in pair)
         if low > high:
             raise ValueError(f"bounds of {name} must rise; got {pair!r}")
         limits[name] = low, high
-    return np.array(list(limits.values())).T
+    return np.array(list(limits.values()), float).T
 
 
 def decode(genes, bounds=None):
@@ -119,6 +121,13 @@ class Sweep:
         return frame
 
 
+def _single(**records):
+    """Refuse records that hold arrays."""
+    for name, record in records.items():
+        if record.shape:
+            raise ValueError(f"{name} must be a single one; got arrays of shape {record.shape}")
+
+
 def replaced(design, scenario, model, changes):
     """Design, scenario and model with fields changed, each found by its name in Design, Scenario, Soil or Model."""
     groups = {Design: {}, Scenario: {}, Soil: {}, Model: {}}
@@ -142,10 +151,12 @@ def sweep(design, scenario, over, model=Model()):
     design : Design
         A single design.
     scenario : Scenario
+        A single mission.
     over : dict of str to array_like
         One or two fields of Design, Scenario, Soil or Model with their values; the mission duration and names cannot
         be swept, since they set the time steps.
     model : Model
+        A single one.
 
     Returns
     -------
@@ -154,7 +165,8 @@ def sweep(design, scenario, over, model=Model()):
     Raises
     ------
     ValueError
-        If a field is unknown, its values are not one-dimensional, or their number is not one or two.
+        If a field is unknown, its values are not one-dimensional, their number is not one or two, or design, scenario
+        or model holds arrays.
 
     Examples
     --------
@@ -164,6 +176,7 @@ def sweep(design, scenario, over, model=Model()):
     >>> s.performance.slip.round(2)
     array([0.09, 0.26, 0.5 ])
     """
+    _single(design=design, scenario=scenario, model=model)
     if not isinstance(over, dict) or not 1 <= len(over) <= 2:
         raise ValueError(f"over must be a dictionary of one or two fields with their values; got {over!r}")
     if "duration_earth_days" in over:
@@ -205,15 +218,15 @@ class Intervals:
         return pd.DataFrame({"nominal": self.nominal, "low": self.low, "median": self.median, "high": self.high})
 
 
-def uncertain_inputs(draws=500, seed=0, scenario=None, model=Model(), table=None):
+def uncertain_inputs(scenario, draws=500, seed=0, model=Model(), table=None):
     """Random soils and model coefficients from the table of uncertainties.
 
     Parameters
     ----------
-    draws : int
-    seed : int
     scenario : Scenario
         Its soil is perturbed.
+    draws : int
+    seed : int
     model : Model
         Its coefficients are perturbed.
     table : list of dict, optional
@@ -225,17 +238,27 @@ def uncertain_inputs(draws=500, seed=0, scenario=None, model=Model(), table=None
     -------
     dict of str to ndarray
         Field names of Soil and Model with `draws` values each, to pass to `replaced`.
+
+    Raises
+    ------
+    ValueError
+        If `draws` is not a whole number of 1 or more, or a row of the table names what does not exist.
     """
     draws = int(check("draws", draws, 1, whole=True, scalar=True))
     random = np.random.default_rng(seed)
     changes = {}
     for row in catalog.rows("uncertainties.csv") if table is None else table:
         name, low, high = row["name"], float(row["low"]), float(row["high"])
+        if row["kind"] not in ("factor", "offset") or row["distribution"] not in ("normal", "uniform"):
+            raise ValueError(f"table: {name} must be a factor or offset, normal or uniform; got {row['kind']!r}, "
+                             f"{row['distribution']!r}")
+        if name not in scenario.soil.numbers() and name not in model.numbers():
+            raise ValueError(f"table: no field {name!r} in Soil or Model")
         if row["distribution"] == "normal":
             drawn = (low + high) / 2 + (high - low) / 2 / _NORMAL_95 * random.standard_normal(draws)
         else:
             drawn = random.uniform(low, high, draws)
-        nominal = getattr(scenario.soil if hasattr(scenario.soil, name) else model, name)
+        nominal = {**model.numbers(), **scenario.soil.numbers()}[name]
         value = nominal * drawn if row["kind"] == "factor" else nominal + drawn
         changes[name] = np.clip(value, float(row["minimum"] or -math.inf), float(row["maximum"] or math.inf))
     return changes
@@ -281,7 +304,9 @@ def intervals(design, scenario, draws=500, seed=0, level=0.9, model=Model(), tab
     if scenario.shape or model.shape or len(design.shape) > 1:
         raise ValueError("intervals takes one design or a flat population, a single scenario and a single model; got "
                          f"shapes {design.shape}, {scenario.shape} and {model.shape}")
-    changes = uncertain_inputs(draws, seed, scenario, model, table)
+    changes = uncertain_inputs(scenario, draws, seed, model, table)
+    if not changes:
+        raise ValueError("table must hold at least one row; got none")
     across = {name: value.reshape(-1, *(1 for _ in design.shape)) for name, value in changes.items()}
     cloud = evaluate(*replaced(design, scenario, model, across))
     nominal = evaluate(design, scenario, model)
@@ -295,7 +320,9 @@ def intervals(design, scenario, draws=500, seed=0, level=0.9, model=Model(), tab
             low[name] = median[name] = high[name] = np.full(design.shape, np.nan)[()]
         else:
             quantile = np.nanquantile if np.isnan(values).any() else np.quantile
-            low[name], median[name], high[name] = quantile(values, [tail, 0.5, 1 - tail], axis=0)
+            # no interpolation between infinities: a speed without a limit, downhill
+            method = "closest_observation" if np.isinf(values).any() else "linear"
+            low[name], median[name], high[name] = quantile(values, [tail, 0.5, 1 - tail], axis=0, method=method)
     return Intervals(level, {name: getattr(nominal, name) for name in METRICS}, low, median, high, cloud)
 
 
@@ -354,9 +381,7 @@ def attribution(design, baseline, scenario, model=Model()):
     >>> bool(np.isclose(why.contributions["total_mass_kg"].sum(), difference))
     True
     """
-    for name, record in ("design", design), ("baseline", baseline), ("scenario", scenario), ("model", model):
-        if record.shape:
-            raise ValueError(f"{name} must be a single one; got arrays of shape {record.shape}")
+    _single(design=design, baseline=baseline, scenario=scenario, model=model)
     count = len(DESIGN_SPACE)
     mixture = np.arange(2**count)
     takes = (mixture[:, None] >> np.arange(count)) & 1 == 1          # (mixtures, variables): from the design?

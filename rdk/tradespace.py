@@ -11,6 +11,7 @@ import json
 import math
 import os
 import queue
+import re
 import warnings
 from functools import cached_property
 from pathlib import Path
@@ -96,10 +97,10 @@ def hypervolume(minimised, objectives, scenario):
     Returns
     -------
     float
-        NaN where an objective has no published scale.
+        NaN where an objective has no published scale, or range no limit.
     """
     scales = [HYPERVOLUME_SCALES.get(name, math.nan) or scenario.traverse_limit_km for name in objectives]
-    if not np.all(np.isfinite(scales)):
+    if not all(0 < scale < math.inf for scale in scales):
         return math.nan
     if not len(minimised):
         return 0.0
@@ -112,6 +113,11 @@ def hypervolume(minimised, objectives, scenario):
 def posed(scenario, objectives=None, constraints=None, seed=None):
     """The scenario and the Study that a search uses: the scenario's own study, with what the caller changes."""
     study = scenario.study
+    if objectives is not None and not isinstance(objectives, dict):
+        raise ValueError(f"objectives must be a dictionary like {{'range_km': 'max'}}; got {objectives!r}")
+    if constraints is not None and not (isinstance(constraints, (list, tuple))
+                                        and all(isinstance(c, (list, tuple)) for c in constraints)):
+        raise ValueError(f"constraints must be a list of (field, '>=' or '<=', limit); got {constraints!r}")
     objectives = study.objectives if objectives is None else dict(objectives)
     constraints = study.constraints if constraints is None else tuple(tuple(c) for c in constraints)
     if not objectives:
@@ -167,7 +173,8 @@ def pareto_front(scenario, population=50, generations=60, seed=None, objectives=
     model : Model
         Scalars only.
     start : Front or Design, optional
-        Warm start: its designs join the first generation, filled up with random ones.
+        Warm start: its designs join the first generation, filled up with random ones; of more than `population`
+        designs, that many from its lightest to its heaviest.
     on_generation : callable, optional
         Called with a `Progress` after each generation; when it returns True the search stops and the front so far is
         returned.
@@ -194,6 +201,8 @@ def pareto_front(scenario, population=50, generations=60, seed=None, objectives=
     generations = int(check("generations", generations, 1, whole=True, scalar=True))
     if seed is not None:
         seed = int(check("seed", seed, 0, whole=True, scalar=True))
+    if not isinstance(model, Model):
+        raise TypeError(f"model must be a Model; got {type(model).__name__}")
     if model.shape:
         raise ValueError(f"model must hold single numbers for a search; got arrays of shape {model.shape}")
     scenario, study = posed(scenario, objectives, constraints, seed)
@@ -219,8 +228,9 @@ def pareto_front(scenario, population=50, generations=60, seed=None, objectives=
     front = so_far(f"stopped after generation {len(history)} of {generations}" if stopped else "")
     if not len(front):
         words = ", ".join(f"{name} {sign} {limit:g}" for name, sign, limit in study.constraints)
-        message = (f"no design of {len(history)} generations met the constraints {words}; "
-                   f"the nearest missed them by {problem.nearest_miss}")
+        message = (f"no design of {len(history)} generations met the constraints {words}; {problem.nearest_miss}"
+                   if math.isfinite(problem.least) else
+                   f"no design of {len(history)} generations has a solution: the wheels are buried")
         warnings.warn(message, UserWarning, stacklevel=2)
         front = dataclasses.replace(front, message=message)
     return front
@@ -238,7 +248,9 @@ def _first_generation(start, population, bounds):
     class WarmStart(FloatRandomSampling):
         def _do(self, problem, n_samples, *args, **kwargs):
             genes = super()._do(problem, n_samples, *args, **kwargs)
-            known = encode(designs, bounds)[:n_samples]
+            known = encode(designs, bounds)
+            if len(known) > n_samples:
+                known = known[np.linspace(0, len(known) - 1, n_samples).round().astype(int)]
             genes[:len(known)] = known
             return genes
 
@@ -256,29 +268,27 @@ def _nsga2(scenario, study, model, population, generations, first, bounds):
     signs = np.array([-1.0 if d == "max" else 1.0 for d in study.objectives.values()])
 
     class Mission(Problem):
-        nearest_miss = "an unknown amount"
+        nearest_miss, least = "", math.inf
 
         def __init__(self):
-            super().__init__(n_var=len(DESIGN_SPACE), n_obj=len(signs), n_ieq_constr=len(study.constraints), xl=0.0,
+            # one constraint more: that the design has a solution at all
+            super().__init__(n_var=len(DESIGN_SPACE), n_obj=len(signs), n_ieq_constr=len(study.constraints) + 1, xl=0.0,
                              xu=1.0)
-            self.least = math.inf
 
         def _evaluate(self, x, out, *args, **kwargs):
             result = evaluate(decode(x, bounds), scenario, model)
             F = np.stack([getattr(result, name) for name in study.objectives], axis=1) * signs
-            G = np.zeros((len(x), 0))
-            if study.constraints:
-                G = np.stack([(getattr(result, name) - limit) * (-1 if sign == ">=" else 1)
-                              for name, sign, limit in study.constraints], axis=1)
+            G = np.stack([(getattr(result, name) - limit) * (-1 if sign == ">=" else 1)
+                          for name, sign, limit in study.constraints] + [np.zeros(len(x))], axis=1)
             failed = result.buried | ~np.isfinite(F).all(1) | ~np.isfinite(G).all(1)
             F[failed], G[failed] = FAILED, FAILED
             out["F"], out["G"] = F, G
-            missed = np.maximum(G, 0).sum(1)
-            if len(G) and missed.min() < self.least:
+            missed = np.where(failed, math.inf, np.maximum(G, 0).sum(1))
+            if len(x) and missed.min() < self.least:
                 self.least = missed.min()
-                nearest = G[missed.argmin()]
-                self.nearest_miss = ", ".join(f"{value:.3g} in {name}" for value, (name, *_) in
-                                              zip(nearest, study.constraints) if value > 0)
+                self.nearest_miss = "the nearest missed them by " + ", ".join(
+                    f"{value:.3g} in {name}" for value, (name, *_) in zip(G[missed.argmin()], study.constraints)
+                    if value > 0)
 
     algorithm = NSGA2(pop_size=population, sampling=first, crossover=SBX(prob=0.9, eta=15),
                       mutation=PM(prob=0.9, eta=20), eliminate_duplicates=True)
@@ -317,7 +327,8 @@ class Case:
     @property
     def label(self):
         """A readable name, also of the case's file."""
-        return (f"{self.scenario.name}_seed{self.seed}_shear{self.shear_scale:g}_obstacle{self.obstacle_height_m:g}"
+        name = re.sub(r"[^\w.-]+", "-", self.scenario.name)         # a name is free text, a file's is not
+        return (f"{name}_seed{self.seed}_shear{self.shear_scale:g}_obstacle{self.obstacle_height_m:g}"
                 f"_{self.population}x{self.generations}_{self.key}")
 
 
@@ -329,7 +340,7 @@ def study(scenarios, seeds=None, shear_scales=(1.0,), obstacle_heights_m=(0.0,),
     ----------
     scenarios : sequence of Scenario
     seeds : sequence of int, optional
-        Default: each scenario's own seed.
+        Default: each scenario's own seed, 0 where it has none.
     shear_scales, obstacle_heights_m : sequence of float
     population, generations : int
     model : Model
@@ -353,13 +364,21 @@ def study(scenarios, seeds=None, shear_scales=(1.0,), obstacle_heights_m=(0.0,),
     ValueError
         If a list is empty or a value is out of range.
     """
-    for name, values in dict(scenarios=scenarios, shear_scales=shear_scales,
-                             obstacle_heights_m=obstacle_heights_m).items():
-        if not len(list(values)):
+    if isinstance(scenarios, Scenario):
+        raise ValueError(f"scenarios must be a list of Scenario; got the single {scenarios.name!r}")
+    lists = {name: list(values) for name, values in dict(
+        scenarios=scenarios, seeds=(None,) if seeds is None else seeds, shear_scales=shear_scales,
+        obstacle_heights_m=obstacle_heights_m).items()}
+    for name, values in lists.items():
+        if not values:
             raise ValueError(f"{name} must not be empty")
-    cases = [Case(scenario, seed, float(scale), float(height), population, generations, model)
-             for scenario in scenarios for seed in (seeds if seeds is not None else (scenario.study.seed or 0,))
-             for scale in shear_scales for height in obstacle_heights_m]
+    # refuse a bad value now, not after an hour: plain numbers, too, give one key for one case
+    seeds = [s if s is None else int(check("seeds", s, 0, whole=True, scalar=True)) for s in lists["seeds"]]
+    scales = [check("shear_scales", s, above=0, scalar=True) for s in lists["shear_scales"]]
+    heights = [check("obstacle_heights_m", h, 0, scalar=True) for h in lists["obstacle_heights_m"]]
+    cases = [Case(scenario, (scenario.study.seed or 0) if seed is None else seed, scale, height, population,
+                  generations, model)
+             for scenario in lists["scenarios"] for seed in seeds for scale in scales for height in heights]
     folder = Path(folder) if folder is not None else None
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
@@ -383,10 +402,14 @@ def study(scenarios, seeds=None, shear_scales=(1.0,), obstacle_heights_m=(0.0,),
             keep(case, front)
     else:
         futures = {executor.submit(Case.run, case): case for case in waiting}
-        for future in _as_completed(futures):
-            front = future.result()
-            _save(folder, futures[future], front)
-            keep(futures[future], front)
+        try:
+            for future in _as_completed(futures):
+                front = future.result()
+                _save(folder, futures[future], front)
+                keep(futures[future], front)
+        finally:                                         # an interrupted study starts nothing more
+            for future in futures:
+                future.cancel()
     return {case: done[case] for case in cases}
 
 
@@ -420,10 +443,11 @@ def _load(folder, case):
         designs = Design(**{name: np.array(kept["designs"][name], float) for name in DESIGN_SPACE})
         history = tuple(np.array(F, float).reshape(len(F), len(case.scenario.study.objectives))
                         for F in kept["objective_history"])
+        message = str(kept["message"])
     except (ValueError, KeyError, TypeError) as error:
         warnings.warn(f"{case.label}.json in {folder} is damaged and computed anew: {error}", UserWarning, stacklevel=3)
         return None
     model = dataclasses.replace(case.model, shear_scale=case.shear_scale)
     scenario, study = posed(dataclasses.replace(case.scenario, required_obstacle_height_m=case.obstacle_height_m),
                             seed=case.seed)
-    return Front(designs, evaluate(designs, scenario, model), scenario, model, study, history, kept["message"])
+    return Front(designs, evaluate(designs, scenario, model), scenario, model, study, history, message)
