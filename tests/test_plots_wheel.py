@@ -1,0 +1,130 @@
+"""The figures of the wheel notebooks draw the numbers they were given, in the units on their axes."""
+
+import matplotlib
+import numpy as np
+import pytest
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt  # noqa: E402
+
+import rdk  # noqa: E402
+from rdk import plots, terramechanics  # noqa: E402
+
+WHEEL, SOIL = rdk.Wheel(0.10, 0.08, 0.015, 14), rdk.soil("apollo-nominal")
+X = np.linspace(0.0, 1.0, 7)
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    plt.close("all")
+
+
+def lines(axes):
+    """The labelled lines of an axes, as (x, y) by label."""
+    return {line.get_label(): (line.get_xdata(), line.get_ydata()) for line in axes.get_lines()
+            if not line.get_label().startswith("_")}
+
+
+def assert_units(figure):
+    """Every axis that carries a label names a unit, or a pure number."""
+    pure = ("slip s", "drawbar pull over load", "evaluations of the stress", "relative error")
+    labels = [label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
+    assert labels and all("(" in label or label in pure for label in labels), labels
+
+
+def test_simple_curves():
+    series = {"a": X**2, "b": 3 * X}
+    for figure in (plots.pressure_sinkage(X, series), plots.shear_mobilisation(X, series, 18.0),
+                   plots.sinkage_against_load(X + 1, series)):
+        assert_units(figure)
+        drawn = lines(figure.axes[0])
+        assert list(drawn) == ["a", "b"]
+        for label, y in series.items():
+            np.testing.assert_array_equal(drawn[label][1], y)
+    assert figure.axes[0].get_xscale() == figure.axes[0].get_yscale() == "log"
+
+
+def test_shear_modulus_and_transition_are_marked():
+    marks = plots.shear_mobilisation(X, {"a": X}, 18.0).axes[0].get_lines()[-1].get_xdata()
+    np.testing.assert_array_equal(marks, 18.0)
+    figure = plots.stress_against_angle(X, 2 * X, 3 * X, 0.4)
+    assert_units(figure)
+    np.testing.assert_array_equal(figure.axes[0].get_lines()[-1].get_xdata(), 0.4)
+    drawn = lines(figure.axes[0])
+    np.testing.assert_array_equal(drawn["normal stress σ"][1], 2 * X)
+    np.testing.assert_array_equal(drawn["shear stress τ"][1], 3 * X)
+
+
+def test_stress_on_rim_is_to_scale():
+    angle = np.linspace(0, 0.35, 101)
+    cases = {f"slip {s}": (angle, terramechanics.contact_stress(WHEEL, SOIL, 0.35, s, angle)) for s in (-0.2, 0.6)}
+    figure = plots.stress_on_rim(WHEEL.radius_m, cases)
+    assert_units(figure)
+    scales = []
+    for axes, (label, (_, stress)) in zip(figure.axes, cases.items()):
+        assert axes.get_title() == label and axes.get_aspect() == 1
+        normal, shear, rim = (np.hypot(*line.get_data()) for line in axes.get_lines()[:3])
+        np.testing.assert_allclose(rim, 100, rtol=1e-12)                 # rounding of sin and cos
+        peak = stress.normal_stress_pa.argmax()
+        scale = (normal[peak] - 100) / (stress.normal_stress_pa[peak] / 1000)
+        scales.append(scale)
+        # the same mm a kPa for both stresses, in every panel, up to rounding
+        np.testing.assert_allclose(normal - 100, stress.normal_stress_pa / 1000 * scale, atol=1e-9)
+        np.testing.assert_allclose(100 - shear, abs(stress.shear_stress_pa) / 1000 * scale, atol=1e-9)
+        arrows = axes.collections[-1]
+        assert (np.sign(arrows.U) == (1 if label == "slip 0.6" else -1)).all()
+        marks = [line.get_data() for line in axes.get_lines()[3:6]]
+        found = [np.arctan2(x[0], -y[0]) for x, y in marks]
+        np.testing.assert_allclose(found, [0.35, stress.transition_angle_rad[0], 0], atol=1e-12)     # rounding
+    np.testing.assert_allclose(scales, scales[0], rtol=1e-12)
+    bar = figure.axes[0].get_lines()[-1].get_xdata()
+    written = float(figure.axes[0].texts[-1].get_text().split()[0])
+    np.testing.assert_allclose(np.ptp(bar), written * scales[0], rtol=1e-12)
+
+
+def test_quadrature_error():
+    points, errors = {"a": np.array([2, 4]), "b": np.array([3, 9])}, {"a": np.array([0.1, 0.0]), "b": [1e-3, 1e-9]}
+    figure = plots.quadrature_error(points, errors, 100)
+    assert_units(figure)
+    drawn = lines(figure.axes[0])
+    np.testing.assert_array_equal(drawn["a"], [[2, 4], [0.1, 1e-16]])
+    np.testing.assert_array_equal(drawn["b"], [[3, 9], [1e-3, 1e-9]])
+
+
+def test_wheel_against_slip():
+    slip = np.linspace(0, 0.6, 5)
+    cases = {"a": terramechanics.wheel_forces(WHEEL, SOIL, 6.0, slip),
+             "b": terramechanics.wheel_forces(WHEEL, SOIL, 9.0, slip)}
+    figure = plots.wheel_against_slip(slip, cases)
+    assert_units(figure)
+    for label, f in cases.items():
+        for axes, y in zip(figure.axes, (f.drawbar_pull_n, f.torque_nm, 1000 * f.sinkage_m)):
+            np.testing.assert_array_equal(lines(axes)[label], [slip, y])
+
+
+def test_wheel_against_size_and_power_split():
+    figure = plots.wheel_against_size(X, {"a": (X, 2 * X), "b": (3 * X, 4 * X)}, "held")
+    assert_units(figure)
+    for axes, factors in zip(figure.axes, ((1, 3), (2, 4))):
+        for (_, y), factor in zip(lines(axes).values(), factors):
+            np.testing.assert_array_equal(y, factor * X)
+    figure = plots.power_split(X, {"a": X, "b": 2 * X}, 3 * X)
+    assert_units(figure)
+    a, b, total = (y for _, y in lines(figure.axes[0]).values())
+    np.testing.assert_array_equal(a + b, total)
+
+
+def test_load_and_pull_marks_the_slope_on_the_circle():
+    slope = terramechanics.slope_capability(WHEEL, SOIL, 6.0)
+    load = np.linspace(0.1, 7, 200)
+    pull = terramechanics.wheel_forces(WHEEL, SOIL, load, 0.6).drawbar_pull_n
+    figure = plots.load_and_pull({"a": (load, pull)}, 6.0, {"a": slope})
+    assert_units(figure)
+    drawn = lines(figure.axes[0])
+    np.testing.assert_array_equal(drawn["a"], [load, pull])
+    x, y = drawn[f"slope {slope:.1f}°"]
+    np.testing.assert_allclose(np.hypot(x, y), 6.0, rtol=1e-12)
+    np.testing.assert_allclose(np.interp(x, load, pull), y, rtol=1e-4)   # the curve is drawn through 200 points
+    np.testing.assert_allclose(np.hypot(*drawn["weight on the wheel"]), 6.0, rtol=1e-12)
