@@ -1,0 +1,328 @@
+"""The evidence tables: computed in one call, recomputed by other means, and every deterministic number of the paper."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from numpy.testing import assert_allclose
+
+import rdk
+import scalar_transcription as scalar
+from rdk import catalog, validation
+
+TARGETS = catalog.table("paper_targets.csv").set_index("id")
+DETERMINISTIC = TARGETS.index[TARGETS.kind == "deterministic"]
+
+
+@pytest.fixture(scope="module")
+def ledger():
+    return validation.paper_ledger().set_index("id")
+
+
+@pytest.fixture(scope="module")
+def points():
+    return validation.single_wheel()
+
+
+@pytest.fixture(scope="module")
+def masses():
+    return validation.published_masses().set_index("rover")
+
+
+# ---- single wheels --------------------------------------------------------------------------------------------
+
+def test_one_call_of_the_kernel_solves_every_point(monkeypatch):
+    calls, solve = [], validation.wheel_forces
+
+    def counted(*args, **options):
+        calls.append(args[3].shape)
+        return solve(*args, **options)
+
+    monkeypatch.setattr(validation, "wheel_forces", counted)
+    table = validation.single_wheel()
+    assert calls == [(27,)] and len(table) == 27
+    validation.bootstrap_medians(samples=3)              # reading errors move the measurements, not the model
+    assert len(calls) == 2
+
+
+@pytest.mark.parametrize("row", [2, 11, 14, 17, 26])
+def test_points_agree_with_a_plain_scalar_transcription(points, row):
+    raw = catalog.table("single_wheel.csv").loc[row]
+    wheel = dict(radius_m=raw.wheel_radius_mm / 1000, width_m=raw.wheel_width_mm / 1000,
+                 grouser_height_m=raw.grouser_height_mm / 1000, grouser_count=raw.grouser_count)
+    soil = {name: float(value) for name, value in rdk.soil(raw.soil).numbers().items()}
+    forces = scalar.wheel_forces(wheel, soil, raw.vertical_load_n, raw.slip, quadrature="gauss")
+    # two quadratures; a few Gauss nodes see the root of a fractional sinkage exponent to about 1e-5
+    assert_allclose(points.model_drawbar_pull_n[row], forces["drawbar_pull_n"], rtol=1e-4)
+    assert_allclose(points.model_sinkage_mm[row], 1000 * forces["sinkage_m"], rtol=1e-4)
+    assert_allclose(points.model_torque_nm[row], forces["torque_nm"], rtol=1e-4)
+
+
+def test_errors_are_signed_and_missing_where_there_is_nothing_to_divide_by(points):
+    braking = points.loc[0]                              # measured -6.5 N, model -9.0 N: the model is below
+    assert braking.drawbar_pull_n == -6.5 and braking.model_drawbar_pull_n < -6.5
+    # plain arithmetic in floating point
+    assert_allclose(braking.drawbar_pull_error_pct, 100 * (braking.model_drawbar_pull_n + 6.5) / 6.5, rtol=1e-12)
+    assert np.isnan(braking.torque_error_pct) and braking.torque_nm == 0
+    assert points[points.experiment == "hurrell-2025"].torque_error_pct.isna().all()
+    assert points[["drawbar_pull_error_pct", "sinkage_error_pct"]].notna().all(axis=None)
+
+
+def test_summary_takes_all_points_and_the_paper_leaves_no_other_choice(points):
+    summary = validation.single_wheel_summary(points).set_index(["experiment", "quantity"])
+    assert summary.points[("ding-2011", "drawbar_pull")] == 12
+    assert ("hurrell-2025", "torque") not in summary.index
+    by_hand = sorted(abs(points.query("experiment == 'hurrell-2025'").drawbar_pull_error_pct))[2]
+    assert summary.median_abs_error_pct[("hurrell-2025", "drawbar_pull")] == by_hand
+    # without the points at zero slip, or of negative pull, the paper's medians do not come out
+    moving = validation.single_wheel_summary(points.query("slip > 0")).set_index(["experiment", "quantity"])
+    pulling = validation.single_wheel_summary(points.query("drawbar_pull_n > 0")).set_index(["experiment", "quantity"])
+    assert not validation.accepts(TARGETS.accept["z_ding"], moving.median_abs_error_pct[("ding-2011", "sinkage")])
+    assert not validation.accepts(TARGETS.accept["dp_wang"],
+                                  pulling.median_abs_error_pct[("wang-han-2016", "drawbar_pull")])
+
+
+def test_curves_pass_through_the_points(points):
+    curves = validation.single_wheel_curves(np.unique(points.slip))
+    assert len(curves) == 5 * points.slip.nunique()
+    both = points.merge(curves, on=["experiment", "wheel", "slip"], suffixes=("", "_curve"))
+    assert len(both) == len(points)
+    for quantity in validation.QUANTITIES:
+        # the same solver on another batch
+        assert_allclose(both[f"model_{quantity}_curve"], both["model_" + quantity], rtol=1e-7, atol=1e-9)
+
+
+def test_bootstrap_is_seeded_and_vanishes_with_the_reading_error():
+    table = validation.bootstrap_medians(samples=200, seed=3)
+    pd.testing.assert_frame_equal(table, validation.bootstrap_medians(samples=200, seed=3))
+    assert not table.equals(validation.bootstrap_medians(samples=200, seed=4))
+    assert (table.low_pct < table.high_pct).all()
+    still = validation.bootstrap_medians(0, 0, 0, samples=5)
+    for column in "low_pct", "median_pct", "high_pct":
+        # a percentile of equal numbers, interpolated
+        assert_allclose(still[column], still.median_abs_error_pct, rtol=1e-12)
+
+
+def test_bootstrap_against_a_loop_written_out():
+    """One experiment again, sample by sample with Python's own arithmetic and another random stream."""
+    table = validation.bootstrap_medians(samples=4000, seed=1).set_index(["experiment", "quantity"])
+    group = validation.single_wheel().query("experiment == 'hurrell-2025'")
+    rng, medians = np.random.default_rng(99), []
+    for _ in range(4000):
+        read = [d + rng.normal(0, 0.5) for d in group.drawbar_pull_n]
+        medians.append(sorted(100 * abs(m - d) / d for m, d in zip(group.model_drawbar_pull_n, read))[2])
+    row = table.loc[("hurrell-2025", "drawbar_pull")]
+    # percentiles of two samples of 4,000 with a spread of about a fifth: well below 3 %
+    assert_allclose([row.low_pct, row.high_pct], np.percentile(medians, [5, 95]), rtol=0.04)
+    wider = validation.bootstrap_medians(resample_points=True).set_index(["experiment", "quantity"])
+    assert (wider.high_pct - wider.low_pct > table.high_pct - table.low_pct).all()
+
+
+@pytest.mark.parametrize("options", [dict(reading_error_n=-1), dict(reading_error_m=math.nan), dict(samples=0),
+                                     dict(samples=1.5)])
+def test_bootstrap_refuses_nonsense(options):
+    with pytest.raises(ValueError, match=next(iter(options))):
+        validation.bootstrap_medians(**options)
+
+
+def test_pull_shift_is_that_of_the_paper_and_none_at_scale_one():
+    table = validation.pull_shift([1.0, 1.30])
+    assert table.median_shift_pct[0] == 0 and table.points[0] == 24
+    # one point again with the scalar transcription: Ding, grousered, slip 0.2
+    wheel = dict(radius_m=0.15735, width_m=0.165, grouser_height_m=0.010, grouser_count=30)
+    soil = {name: float(value) for name, value in rdk.soil("hit-2011").numbers().items()}
+    plain, scaled = (scalar.wheel_forces(wheel, soil, 80.0, 0.2, dict(scalar.MODEL, shear_scale=s), "gauss")
+                     ["drawbar_pull_n"] for s in (1.0, 1.3))
+    ours = validation.single_wheel(shear_scale=1.3).model_drawbar_pull_n[8]
+    assert_allclose(ours, scaled, rtol=1e-4)             # two quadratures, as above
+    assert scaled > 1.2 * plain
+
+
+# ---- load transfer --------------------------------------------------------------------------------------------
+
+def test_load_transfer_by_moments_written_out():
+    """Axle loads from the balance of moments, pulls wheel by wheel."""
+    scenario = rdk.scenario("equatorial_mare_traverse")
+    for name, axles in ("Rashid-1", [-0.5, 0.5]), ("Pragyan", [-0.5, 0.0, 0.5]):
+        rover = rdk.rover(name)
+        weight = rdk.evaluate(rover, scenario).total_mass_kg * 1.625
+        slope, height = math.radians(25), 0.4
+        # loads linear in position, n = a + b x: sum n = W cos, sum n x = W sin h (lengths in wheelbases)
+        a = weight * math.cos(slope) / len(axles)
+        b = weight * math.sin(slope) * height / sum(x * x for x in axles)
+        pull = [2 * rdk.terramechanics.wheel_forces(rover.wheel, scenario.soil, n / 2, 0.6).drawbar_pull_n
+                for n in [a] + [a + b * x for x in axles]]
+        expected = 100 * (sum(pull[1:]) / (len(axles) * pull[0]) - 1)
+        # a difference of nearly equal pulls, each solved to about 1e-9
+        assert_allclose(validation.load_transfer(rover, scenario), expected, rtol=1e-4)
+
+
+def test_load_transfer_broadcasts_and_knows_its_limits():
+    scenario, rover = rdk.scenario("equatorial_mare_traverse"), rdk.rover("Rashid-1")
+    change = validation.load_transfer(rover, scenario, [0.0, 0.2, 0.4, 1.2])
+    assert change[0] == 0 and np.isnan(change[3]), "at 1.2 the upper axle lifts off"
+    assert abs(change[1]) < abs(change[2])
+    with pytest.raises(ValueError, match="height_to_wheelbase"):
+        validation.load_transfer(rover, scenario, -0.1)
+
+
+# ---- masses ---------------------------------------------------------------------------------------------------
+
+def test_tenacious_by_hand(masses):
+    wheels = 4 * (8.0 * 2 * math.pi * 0.06 * 0.04 + 12 * 0.04 * 0.005 * 0.002 * 2700)
+    torque = 2 * 0.7 * (5.0 * 1.625 / 4) * 0.06
+    motors = 4 * (0.15 + 0.1 * torque)
+    subsystems = 1.7 + wheels + motors + 2.5 * 0.15 + 25 / 120 + 0.3 + 0.05 * 8
+    total = subsystems * 1.08 * 1.05 * 1.2 + 0.3
+    row = masses.loc["Tenacious"]
+    # the same arithmetic in another order
+    assert_allclose([row.peak_wheel_torque_nm, row.wheels_kg, row.predicted_mass_kg], [torque, wheels, total],
+                    rtol=1e-12)
+    assert_allclose(row.fixed_overhead_pct, 100 * (4 * 0.15 + 0.3) * 1.08 * 1.05 * 1.2 / 5.0, rtol=1e-12)
+    assert 24 < row.fixed_overhead_pct < 26, "the paper's quarter"
+
+
+def test_items_add_up_and_summary_is_that_of_the_five(masses):
+    # sums in another order
+    assert_allclose(masses[list(validation.MASS_ITEMS)].sum(axis=1), masses.predicted_mass_kg, rtol=1e-12)
+    inside = masses[masses.in_class.astype(bool)]
+    assert len(inside) == 5 and ((inside.published_mass_kg >= 5) & (inside.published_mass_kg <= 50)).all()
+    row = validation.published_masses_summary().iloc[0]
+    errors = sorted(abs(inside.predicted_mass_kg / inside.published_mass_kg - 1) * 100)
+    assert_allclose([row.median_abs_error_pct, row.mean_abs_error_pct], [errors[2], sum(errors) / 5], rtol=1e-12)
+
+
+def test_a_changed_coefficient_moves_the_table_as_a_model_would(masses):
+    table = validation.mass_sensitivity(10).set_index("coefficient")
+    model = rdk.Model(growth_fraction=0.22)
+    changed = validation.published_masses(model).set_index("rover")
+    row = table.loc["growth_fraction"]
+    for rover in masses.index:
+        expected = 100 * (changed.predicted_mass_kg[rover] / masses.predicted_mass_kg[rover] - 1)
+        assert_allclose(row[rover], expected, rtol=1e-9)                     # a difference of nearly equal totals
+    assert_allclose(row.median_abs_error_pct, validation.published_masses_summary(
+        changed.reset_index()).median_abs_error_pct[0], rtol=1e-12)          # the same arithmetic
+    assert table.loc["linkage_base_mass_kg", "Tenacious"] == 0, "a rigid rover has no linkage"
+    nothing = validation.mass_sensitivity(0)
+    assert (nothing[list(masses.index)] == 0).all(axis=None)
+
+
+# ---- flown rovers ---------------------------------------------------------------------------------------------
+
+def test_peak_power_by_hand():
+    pragyan = 1361 * 0.5 * math.cos(math.radians(69.4)) * 0.30 * 0.90 * 0.92 * 0.90 * 0.98
+    yutu2 = 1361 * 1.3 * math.cos(math.radians(45.5)) * 0.30 * 0.90 * 0.92 * 0.90
+    flown = validation.flown_rovers().set_index("rover")
+    # the same products, the sine and cosine of the sun apart
+    assert_allclose([flown.clean_peak_w["Pragyan"], flown.peak_w["Yutu-2"]], [pragyan, yutu2], rtol=1e-12)
+    assert_allclose(flown.implied_derate["Yutu-2"], 135 / yutu2, rtol=1e-12)
+    sweep = validation.peak_solar_power_w(0.5, -69.4, np.array([0.28, 0.32]))
+    assert_allclose(sweep, [flown.clean_peak_low_w["Pragyan"], flown.clean_peak_high_w["Pragyan"]], rtol=1e-12)
+
+
+def test_night_temperatures_by_hand():
+    flown = validation.flown_rovers().set_index("rover")
+    radiated = 0.85 * 5.670374419e-8 * np.array([0.25, 0.1])             # W per K^4
+    kelvin = (100.0**4 + np.array([2.0, 5.0 + 15.0]) / radiated) ** 0.25
+    assert_allclose(flown.cold_temperature_c[["Pragyan", "Yutu-2"]], kelvin - 273.15, rtol=1e-12)    # same arithmetic
+    assert (flown.survives == flown.survived).all()
+
+
+def test_range_envelope_is_the_limit_of_the_scenario():
+    flown = validation.flown_rovers().set_index("rover")
+    for rover, mission in ("Pragyan", "chandrayaan3_pragyan"), ("Yutu-2", "change4_yutu2_per_lunar_day"):
+        limit = rdk.scenario(mission).traverse_limit_km
+        assert_allclose(flown.range_m[rover], 1000 * limit, rtol=1e-12)      # clipped there
+        assert flown.unlimited_range_km[rover] > limit
+        assert flown.range_m[rover] > flown.published_traverse_m[rover]
+
+
+# ---- the ledger -----------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("name", DETERMINISTIC)
+def test_every_deterministic_number_is_inside_its_band(ledger, name):
+    assert ledger.agrees[name] == True, ledger.loc[name].to_dict()          # noqa: E712, NA is not True
+
+
+def test_ledger_has_one_row_for_every_target(ledger):
+    assert list(ledger.index) == list(DETERMINISTIC)
+    assert list(ledger.reset_index().columns) == ["id", "section", "quantity", "paper", "ours", "agrees", "why"]
+    assert (ledger.section == TARGETS.paper_section[DETERMINISTIC]).all()
+    assert all(isinstance(why, str) for why in ledger.why)
+
+
+def test_our_numbers_do_not_come_from_the_bands(monkeypatch, ledger):
+    """With the paper's values and bands replaced, ours stay and every row but the reports disagrees."""
+    real = catalog.table
+
+    def other(name):
+        table = real(name)
+        return table.assign(accept="-9..-8", paper_value="?") if name == "paper_targets.csv" else table
+
+    monkeypatch.setattr(catalog, "table", other)
+    again = validation.paper_ledger().set_index("id")
+    assert not again.agrees.any()
+    assert [str(x) for x in again.ours] == [str(x) for x in ledger.ours]
+
+
+def test_a_changed_measurement_changes_its_row(monkeypatch):
+    real = catalog.table
+
+    def other(name):
+        table = real(name)
+        return table.assign(drawbar_pull_n=table.drawbar_pull_n * 2) if name == "single_wheel.csv" else table
+
+    monkeypatch.setattr(catalog, "table", other)
+    evidence = validation._Evidence()
+    found = validation._LEDGER["dp_ding"](evidence)[0]
+    assert not validation.accepts(TARGETS.accept["dp_ding"], found)
+
+
+def test_ledger_refuses_an_unknown_kind():
+    with pytest.raises(ValueError, match="deterministic, stochastic, cost; got 'guessed'"):
+        validation.paper_ledger(kinds=("guessed",))
+
+
+@pytest.mark.parametrize("accept, inside, outside", [
+    ("26.5..27.7", [26.5, 27.0, 27.7, (26.6, 27.6)], [26.4, 27.8, (26.0, 27.0), math.nan]),
+    ("max 80; min < 8", [(0.9, 80.0), [7.9, 80]], [(0.9, 79.0), (8.0, 80.0)]),
+    ("max 25; min 8.4..10.0", [(9.0, 25.0)], [(8.0, 25.0), (10.1, 25.0)]),
+    ("min 9.0..10.6", [(9.6, 55.0), 9.6], [(8.0, 55.0)]),
+    (">= 98", [98, 100.0, (98, 99)], [97.9, (97, 99)]),
+    ("<= 0.20", [0.2, 0.11], [0.21]),
+    ("< 2 or a stated disagreement", [1.3], [2.0, 3.0]),
+    ("100", [100, 100.0], [99.5]),
+    ("False", [False, np.False_], [True, 0.0, "False"]),
+    ("True", [True], [False, 1.0]),
+    ("infeasible", ["infeasible"], ["feasible", 3.0]),
+    ("-9..-8", [-8.5], [8.5, True]),
+])
+def test_bands_are_read(accept, inside, outside):
+    assert all(validation.accepts(accept, value) is True for value in inside)
+    assert not any(validation.accepts(accept, value) for value in outside)
+
+
+def test_bands_that_ask_only_for_a_report_and_bands_that_cannot_be_read():
+    assert validation.accepts("report ours beside the original's", 1.0) is None
+    for damaged in "26.5 to 27.7", "", ">= 3..4", "about 5":
+        with pytest.raises(ValueError, match="accept must be"):
+            validation.accepts(damaged, 27.0)
+
+
+@pytest.mark.parametrize("accept", TARGETS.accept.unique())
+def test_every_band_of_the_file_can_be_read(accept):
+    assert validation.accepts(accept, (1.0, 2.0)) in (True, False, None)
+
+
+def test_constants_of_studies_are_found_by_name():
+    assert validation.constant("flown_packing_factor") == 0.90
+    with pytest.raises(ValueError, match="no constant 'flown'"):
+        validation.constant("flown")
+
+
+def test_conditions_carry_the_units_of_the_kernel():
+    wheel, soil, load, slip = validation.single_wheel_conditions()
+    assert wheel.shape == soil.shape == load.shape == slip.shape == (27,)
+    assert wheel.radius_m.max() < 0.2 and dataclasses.asdict(soil[0])["shear_modulus_mm"] == 11
