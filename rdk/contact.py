@@ -21,9 +21,8 @@ def in_blocks(solve, lanes, shape):
     """`solve` on slices of lanes that fit the cache; results with the caller's shape, floats for one lane."""
     with np.errstate(all="ignore"):                      # a lane without a solution is NaN, not a warning
         blocks = [solve(lanes[:, i:i + BLOCK]) for i in range(0, lanes.shape[1], BLOCK)]
-    if not blocks:
-        blocks = [solve(np.ones((len(lanes), 1)))]
-        return [np.empty(shape, dtype=a.dtype) for a in blocks[0]]
+        if not blocks:                                   # nothing to solve: one lane of ones shows the kinds
+            return [np.empty(shape, dtype=a.dtype) for a in solve(np.ones((len(lanes), 1)))]
     joined = [np.concatenate(parts).reshape(shape) for parts in zip(*blocks)]
     return [a if shape else a.item() for a in joined]
 
