@@ -299,7 +299,8 @@ def _march(lane, times, steps, with_log):
     load = base_load + duty * mobility
     incidence = _incidence(times, lane)
     solar = incidence * sun                              # (steps, lanes)
-    net = solar - load
+    net = np.empty((len(times), *np.broadcast_shapes((1,), *map(np.shape, lane.values()))))
+    np.subtract(solar, load, out=net)                    # for all lanes, also those that differ in the battery only
     deficit = net < 0
     capacity = lane["battery_capacity_wh"]
     stored = power.march_battery(
