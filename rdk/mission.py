@@ -100,6 +100,10 @@ class Performance(Record):
         Enclosure at noon and in the lunar night.
     obstacle_capability_m : float or ndarray
         0.5 r rigid, 1.25 r rocker-bogie (by default).
+    ground_pressure_kpa : float or ndarray
+        Mean vertical pressure under a wheel at the slip balance, in kPa: its load over the wheel's width times the
+        length of its contact, sqrt(z (2 r - z)) at sinkage z. The paper has no such figure; a constraint on it is one
+        remedy for the wheels that shrink to the search bound.
     mass : MassBreakdown
     log : TraverseLog or None
         Hour by hour, for one design only.
@@ -124,6 +128,7 @@ class Performance(Record):
     hot_temperature_c: float
     cold_temperature_c: float
     obstacle_capability_m: float
+    ground_pressure_kpa: float
     mass: MassBreakdown
     log: TraverseLog | None = field(default=None, repr=False, compare=False)
 
@@ -193,13 +198,15 @@ def evaluate(design, scenario, model=Model()):
         survives = thermal.survives(hot, cold, model.operating_temperature_min_c, model.operating_temperature_max_c)
         obstacle = design.wheel_radius_m * np.where(np.equal(design.wheel_count, 6), model.rocker_bogie_obstacle_ratio,
                                                     model.rigid_obstacle_ratio)
+        contact_m2 = design.wheel_width_m * np.sqrt(balance.sinkage_m * (2 * design.wheel_radius_m - balance.sinkage_m))
+        pressure = weight * np.cos(np.radians(scenario.slope_deg)) / contact_m2 / 1000
         feasible = (~np.asarray(stalled) & (traverse["energy_balance_pct"] >= 0) & (traverse["range_km"] > 0)
                     & (obstacle >= scenario.required_obstacle_height_m))
     fields = dict(
         traverse, total_mass_kg=mass.total_kg, slope_capability_deg=capability, stalled=stalled,
         thermal_survival=survives, feasible=feasible, buried=balance.buried, slip=balance.slip,
         sinkage_m=balance.sinkage_m, wheel_torque_nm=balance.torque_nm, hot_temperature_c=hot, cold_temperature_c=cold,
-        obstacle_capability_m=obstacle)
+        obstacle_capability_m=obstacle, ground_pressure_kpa=pressure)
     return Performance(**{name: _shaped(value, shape) for name, value in fields.items()}, log=log,
                        mass=MassBreakdown(**{name: _shaped(value, shape) for name, value in mass.numbers().items()}))
 
