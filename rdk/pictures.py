@@ -35,9 +35,9 @@ def label(name):
     return LABELS.get(name, name.replace("_", " "))
 
 
-def blank():
-    """A bare figure of the explorer's size."""
-    figure = Figure(figsize=SIZE, dpi=DPI)
+def blank(size=SIZE, dpi=DPI):
+    """A bare figure, of the explorer's size unless told otherwise."""
+    figure = Figure(figsize=size, dpi=dpi)
     FigureCanvasAgg(figure)
     return figure
 
@@ -46,7 +46,7 @@ def html(figure, alt):
     """The figure as an `img` element with alternative text."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", pil_kwargs={"compress_level": 1})
-    width, height = int(SIZE[0] * DPI), int(SIZE[1] * DPI)
+    width, height = (figure.get_size_inches() * figure.dpi).astype(int)
     words = alt.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;")
     return (f'<img class="rdk-picture" width="{width}" height="{height}" style="max-width:100%;height:auto" alt="{words}" '
             f'src="data:image/png;base64,{base64.b64encode(buffer.getvalue()).decode()}">')
@@ -176,6 +176,7 @@ def why(figure, metric, contributions, before, after, baseline_name):
     axes.axvline(after, color=BLACK, ls="--")
     axes.set_yticks(range(len(names)), names, fontsize=8)
     axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.use_sticky_edges = False                        # bars would pin the limits to their ends
     axes.margins(x=0.14)
     axes.set_xlabel(label(metric))
     axes.set_title(f"{baseline_name} (dotted) {before:.3g} to this design (dashed) {after:.3g}", fontsize=9, loc="left")
