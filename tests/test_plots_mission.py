@@ -1,4 +1,4 @@
-"""Figures of notebooks 00 and 05: what is drawn is what was handed over, and the diagram is what the code does."""
+"""Figures of notebooks 00 and 05: they draw what they are given, and the diagram is what the code does."""
 import matplotlib
 
 matplotlib.use("Agg")
@@ -28,7 +28,7 @@ def texts(axes):
     return [text.get_text() for text in axes.texts]
 
 
-# ---- the system diagram ----------------------------------------------------------------------------------------
+# ---- the system diagram ------------------------------------------------------------------------------------
 
 ONE_COEFFICIENT = {"mass": "growth_fraction", "terramechanics": "shear_scale", "power": "panel_efficiency",
                    "cruise speed": "drivetrain_efficiency", "march": "soc_floor",
@@ -57,6 +57,14 @@ def test_a_change_in_one_part_reaches_just_the_parts_downstream(part):
     assert changed == downstream(part)
 
 
+def test_the_march_sees_the_sun_even_where_the_hub_sets_the_speed():
+    before = rdk.evaluate(RASHID, POLAR)
+    after = rdk.evaluate(RASHID, POLAR, rdk.Model(panel_efficiency=0.25))
+    assert before.hub_speed_limited and before.cruise_speed_m_s == after.cruise_speed_m_s
+    assert before.range_km > after.range_km and before.energy_balance_pct > after.energy_balance_pct
+    assert ("power", "march") in {(start, end) for start, end, _ in plots.EVALUATION_FLOW}
+
+
 def test_diagram_draws_every_part_flow_and_result():
     axes = plots.system_diagram().axes[0]
     drawn = texts(axes)
@@ -69,7 +77,7 @@ def test_diagram_draws_every_part_flow_and_result():
     assert set(users.split(", ")) <= set(rdk.__all__)
 
 
-# ---- 00 start here ---------------------------------------------------------------------------------------------
+# ---- 00 start here -----------------------------------------------------------------------------------------
 
 def test_growth_draws_values_and_proportion():
     mass, sinkage = np.array([10.0, 15.0, 20.0]), np.array([4.0, 5.0, 5.5])
@@ -103,7 +111,7 @@ def test_sunk_wheel_stands_as_deep_as_the_evaluator_says(slope_deg):
     np.testing.assert_allclose((rim @ up).min(), -result.sinkage_m, atol=2e-5)
     np.testing.assert_allclose((rim @ up).max(), 2 * RASHID.wheel_radius_m - result.sinkage_m, atol=2e-5)
     surface = soil[:32] @ up                             # rut, contact arc, undisturbed surface
-    np.testing.assert_allclose([surface[0], surface.max()], [-result.sinkage_m, 0], atol=1e-12)    # rounding only
+    np.testing.assert_allclose([surface[0], surface.max()], [-result.sinkage_m, 0], atol=1e-12)  # rounding
     assert f"sinks {1000 * result.sinkage_m:.1f} mm" in figure.get_suptitle()
 
 
@@ -132,7 +140,7 @@ def test_live_picture_follows_its_sliders_and_has_words():
     assert plt.get_fignums() == []                       # no pyplot in a callback
 
 
-# ---- 05 mission ------------------------------------------------------------------------------------------------
+# ---- 05 mission --------------------------------------------------------------------------------------------
 
 def test_pull_and_demand_marks_the_crossing():
     slip, load, demand = np.linspace(0, 0.9, 10), 6.0, 1.5
