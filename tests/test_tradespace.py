@@ -1,0 +1,627 @@
+"""Pareto fronts and studies: same bits, true fronts, clear refusals, and work that an interruption spares."""
+
+import itertools
+import json
+import math
+import multiprocessing
+import os
+import sys
+import warnings
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rdk
+from rdk import catalog, sampling
+from rdk import tradespace as ts
+
+MARE = rdk.scenario("equatorial_mare_traverse")
+HIGHLAND = rdk.scenario("highland_slope_capability")
+RASHID = rdk.rover("Rashid-1")
+SMALL = dict(population=12, generations=8, seed=3)
+
+
+@pytest.fixture(scope="module")
+def small():
+    return rdk.pareto_front(MARE, **SMALL)
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """Shapes of the populations that a search evaluates, and what came out."""
+    seen = []
+
+    def evaluate(design, *rest):
+        seen.append((design, rdk.evaluate(design, *rest)))
+        return seen[-1][1]
+
+    monkeypatch.setattr(ts, "evaluate", evaluate)
+    return seen
+
+
+def minimised(front):
+    return np.stack([getattr(front.performance, name) * (-1.0 if direction == "max" else 1.0)
+                     for name, direction in front.study.objectives.items()], axis=1)
+
+
+def assert_same_bits(one, other):
+    for a, b in (one.designs, other.designs), (one.performance, other.performance):
+        assert a.shape == b.shape
+        for (name, x), y in zip(a.numbers().items(), b.numbers().values()):
+            np.testing.assert_array_equal(x, y, err_msg=name)
+    assert len(one.objective_history) == len(other.objective_history)
+    for x, y in zip(one.objective_history, other.objective_history):
+        np.testing.assert_array_equal(x, y)
+    np.testing.assert_array_equal(one.history, other.history)
+    assert (one.scenario, one.study, one.message) == (other.scenario, other.study, other.message)
+    assert one.model.numbers() == other.model.numbers()
+
+
+# ---- what a front is -------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("name", rdk.scenario_names("canonical"))
+def test_no_point_of_a_front_dominates_another_and_all_meet_the_constraints(name):
+    front = rdk.pareto_front(rdk.scenario(name), population=20, generations=15)
+    F = minimised(front)
+    assert len(front) > 3
+    for i, j in itertools.permutations(range(len(F)), 2):
+        assert not (np.all(F[i] <= F[j]) and np.any(F[i] < F[j])), (i, j)
+    assert np.all(front.performance.range_km >= 0.1)
+    if name == HIGHLAND.name:
+        assert np.all(front.performance.slope_capability_deg >= 15)
+        assert front.performance.range_km.max() > HIGHLAND.traverse_limit_km
+    assert np.all(np.diff(front.performance.total_mass_kg) >= 0)
+    again = rdk.evaluate(front.designs, front.scenario)
+    for metric in sampling.METRICS:
+        np.testing.assert_array_equal(getattr(front.performance, metric), getattr(again, metric))
+
+
+def test_designs_of_a_front_can_be_built(small):
+    for name, variable in rdk.DESIGN_SPACE.items():
+        values = getattr(small.designs, name)
+        assert np.all((values >= variable.low) & (values <= variable.high)), name
+    assert np.isin(small.designs.wheel_count, (4, 6)).all() and small.designs.grouser_count.dtype.kind == "i"
+    frame = small.to_frame()
+    assert len(frame) == len(small) and list(frame.columns[:11]) == list(rdk.DESIGN_SPACE)
+    np.testing.assert_array_equal(frame.range_km, small.performance.range_km)
+
+
+def test_a_search_beats_as_many_random_designs(small):
+    random = rdk.evaluate(rdk.random_designs(12 * 8, seed=3), MARE)
+    F = np.stack([-random.range_km, random.total_mass_kg, -random.slope_capability_deg], axis=1)
+    assert small.history[-1] > ts.hypervolume(F[random.range_km >= 0.1], small.study.objectives, MARE)
+
+
+def test_the_paper_settings_reach_pymoo():
+    first = ts._first_generation(None, 50, None)
+    algorithm, problem = ts._nsga2(*ts.posed(MARE), rdk.Model(), 50, 60, first, None)
+    mating = algorithm.mating
+    assert (algorithm.pop_size, algorithm.n_offsprings, mating.selection.pressure) == (50, 50, 2)
+    assert (mating.crossover.prob.value, mating.crossover.eta.value) == (0.9, 15)
+    assert (mating.mutation.prob.value, mating.mutation.eta.value) == (0.9, 20)
+    assert mating.mutation.get_prob_var(problem) == 1 / 11
+    assert problem.n_var == 11 and problem.n_obj == 3
+    assert algorithm.survival.__class__.__name__ == "RankAndCrowding"
+    assert algorithm.eliminate_duplicates.__class__.__name__ == "DefaultDuplicateElimination"
+
+
+# ---- same seed, same bits --------------------------------------------------------------------------------
+
+def test_same_seed_same_bits_whatever_the_global_generator_does(small):
+    np.random.seed(99)
+    state = np.random.get_state()[1].copy()
+    assert_same_bits(small, rdk.pareto_front(MARE, **SMALL))
+    np.testing.assert_array_equal(np.random.get_state()[1], state)
+    other = rdk.pareto_front(MARE, **(SMALL | {"seed": 4}))
+    assert other.history[-1] != small.history[-1]
+
+
+def test_the_seed_of_the_study_is_the_default():
+    names = "crater_rim_survey", MARE.name, HIGHLAND.name, "polar_prospecting"
+    assert [rdk.scenario(name).study.seed for name in names] == [12, 13, 14, 15]
+    few = dict(population=6, generations=2)
+    assert_same_bits(rdk.pareto_front(MARE, **few), rdk.pareto_front(MARE, seed=13, **few))
+
+
+# ---- one call a generation -------------------------------------------------------------------------------
+
+def test_a_generation_is_one_call(calls):
+    rdk.pareto_front(MARE, **SMALL)
+    sizes = [design.shape for design, _ in calls]
+    # at the end the front is evaluated twice: to sort it, and in its final order
+    assert sizes[:8] == [(12,)] * 8 and len(sizes) == 10
+
+
+def python_calls(function):
+    """How many Python functions of the package run."""
+    count, package = 0, os.path.dirname(rdk.__file__)
+
+    def profile(frame, event, argument):
+        nonlocal count
+        count += event == "call" and frame.f_code.co_filename.startswith(package)
+
+    sys.setprofile(profile)
+    try:
+        function()
+    finally:
+        sys.setprofile(None)
+    return count
+
+
+def test_a_population_of_50_takes_the_python_calls_of_a_population_of_5():
+    few = rdk.random_designs(5, seed=1)
+    many = rdk.Design(**{name: np.tile(value, 10) for name, value in few.numbers().items()})
+    rdk.evaluate(few, MARE)
+    # the same five designs ten times take the same steps: any call more would be one a design
+    assert python_calls(lambda: rdk.evaluate(few, MARE)) == python_calls(lambda: rdk.evaluate(many, MARE))
+
+
+def test_a_search_with_50_designs_takes_the_python_calls_of_one_with_5():
+    def search(population):
+        return python_calls(lambda: rdk.pareto_front(MARE, population=population, generations=4, seed=1))
+
+    search(5)
+    # ten times the designs; what may differ is a Newton step or two until the last lane converges
+    assert search(50) < 1.5 * search(5)
+
+
+# ---- progress, stop, warm start --------------------------------------------------------------------------
+
+def test_progress_counts_and_shows_the_front_so_far_without_touching_the_search(small):
+    seen = []
+    front = rdk.pareto_front(MARE, **SMALL, on_generation=lambda p: seen.append((p, p.front())))
+    assert_same_bits(front, small)
+    assert [(p.generation, p.generations) for p, _ in seen] == [(i, 8) for i in range(1, 9)]
+    for i, (_, so_far) in enumerate(seen, 1):
+        assert len(so_far.objective_history) == i and so_far.history[-1] == front.history[i - 1]
+    assert_same_bits(seen[-1][1], small)
+
+
+@pytest.mark.parametrize("stop", [1, 5])
+def test_a_stopped_search_returns_the_front_so_far(small, stop):
+    front = rdk.pareto_front(MARE, **SMALL, on_generation=lambda p: p.generation == stop)
+    assert front.message == f"stopped after generation {stop} of 8" and len(front.history) == stop
+    whole = rdk.pareto_front(MARE, **(SMALL | {"generations": stop}))
+    assert_same_bits(replace(front, message=""), whole)
+    np.testing.assert_array_equal(front.history, small.history[:stop])
+
+
+def test_a_stop_without_a_feasible_design_is_an_empty_front():
+    with pytest.warns(UserWarning, match="no design of 2 generations"):
+        front = rdk.pareto_front(MARE, **SMALL, constraints=[("range_km", ">=", 90)],
+                                 on_generation=lambda p: p.generation == 2)
+    assert len(front) == 0
+
+
+def test_an_error_in_the_callback_is_the_callers():
+    def broken(progress):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        rdk.pareto_front(MARE, **SMALL, on_generation=broken)
+
+
+def test_warm_start_keeps_what_is_known(small, calls):
+    front = rdk.pareto_front(MARE, population=20, generations=3, seed=8, start=small)
+    known, first = small.to_frame(), calls[0][0].to_frame()
+    assert len(first) == 20
+    for name in rdk.DESIGN_SPACE:
+        # there and back through the genes costs the last bits
+        np.testing.assert_allclose(first[name][:len(small)], known[name], rtol=1e-13, err_msg=name)
+    assert front.history[0] >= small.history[-1] * (1 - 1e-9)
+    cold = rdk.pareto_front(MARE, population=20, generations=3, seed=8)
+    assert front.history[0] > cold.history[-1]
+
+
+def test_warm_start_from_one_design_from_many_and_from_none(small, calls):
+    few = dict(population=6, generations=1, seed=2)
+    rdk.pareto_front(MARE, **few, start=RASHID)
+    np.testing.assert_allclose(calls[0][0].wheel_radius_m[0], RASHID.wheel_radius_m, rtol=1e-13)
+    calls.clear()
+    rdk.pareto_front(MARE, **few, start=small)          # more than fit: from the lightest to the heaviest
+    masses = calls[0][1].total_mass_kg
+    np.testing.assert_allclose(masses[[0, -1]], small.performance.total_mass_kg[[0, -1]], rtol=1e-9)
+    empty = replace(small, designs=small.designs[:0], performance=small.performance[:0])
+    assert_same_bits(rdk.pareto_front(MARE, **few, start=empty), rdk.pareto_front(MARE, **few))
+
+
+# ---- how a mission is posed ------------------------------------------------------------------------------
+
+def test_the_catalogue_poses_every_canonical_scenario_as_its_table_says():
+    table = {row["scenario"]: row for row in catalog.rows("studies.csv")}
+    assert set(table) == set(rdk.scenario_names("canonical"))
+    for name, row in table.items():
+        study = rdk.scenario(name).study
+        assert ";".join(f"{field}:{way}" for field, way in study.objectives.items()) == row["objectives"]
+        assert ";".join(f"{field} {sign} {x:g}" for field, sign, x in study.constraints) == row["constraints"]
+        limit = row["traverse_limit_km"]
+        assert (study.seed, study.traverse_limit_km) == (int(row["seed"]), float(limit) if limit else None)
+
+
+def test_highland_is_posed_by_its_study_and_not_by_its_name():
+    few = dict(population=8, generations=3, seed=1)
+    other = replace(MARE, study=HIGHLAND.study)
+    front = rdk.pareto_front(other, **few)
+    assert list(front.study.objectives) == ["range_km", "total_mass_kg"]
+    assert front.scenario.traverse_limit_km == 120 and np.all(front.performance.slope_capability_deg >= 15)
+    renamed, named = (rdk.pareto_front(s, **few) for s in (replace(HIGHLAND, name="somewhere"), HIGHLAND))
+    np.testing.assert_array_equal(renamed.performance.range_km, named.performance.range_km)
+
+
+def test_objectives_and_constraints_can_be_any_performance_fields():
+    front = rdk.pareto_front(MARE, population=12, generations=6, seed=1, constraints=[("feasible", ">=", 1)],
+                             objectives={"energy_balance_pct": "max", "hot_temperature_c": "min"})
+    F = minimised(front)
+    assert np.all(front.performance.feasible) and np.all(np.isnan(front.history))
+    assert np.all(np.diff(F[np.argsort(F[:, 0])][:, 1]) <= 0)
+    one = rdk.pareto_front(MARE, population=12, generations=6, seed=1, objectives={"total_mass_kg": "min"})
+    assert len(set(one.performance.total_mass_kg)) == 1 and np.all(one.performance.range_km >= 0.1)
+
+
+def test_a_required_obstacle_becomes_a_constraint():
+    blocked = replace(MARE, required_obstacle_height_m=0.15)
+    front = rdk.pareto_front(blocked, population=16, generations=8, seed=2)
+    assert front.study.constraints[-1] == ("obstacle_capability_m", ">=", 0.15)
+    assert np.all(front.performance.obstacle_capability_m >= 0.15) and np.all(front.designs.wheel_count == 6)
+
+
+def test_bounds_hold_and_the_model_is_used():
+    few = dict(population=10, generations=4, seed=1)
+    front = rdk.pareto_front(MARE, **few, bounds={"wheel_width_m": (0.06, 0.08), "wheel_count": (6, 6)})
+    assert np.all((front.designs.wheel_width_m >= 0.06) & (front.designs.wheel_width_m <= 0.08))
+    assert set(front.designs.wheel_count) == {6}
+    model = rdk.Model(growth_fraction=0.5)
+    front = rdk.pareto_front(MARE, **few, model=model)
+    np.testing.assert_array_equal(front.performance.total_mass_kg,
+                                  rdk.evaluate(front.designs, MARE, model).total_mass_kg)
+
+
+# ---- lanes without a solution, and empty fronts ----------------------------------------------------------
+
+SOFT = replace(MARE, soil=replace(MARE.soil, frictional_modulus_kn_m_n2=30.0, cohesive_modulus_kn_m_n1=0.0),
+               slope_deg=0.0)
+
+
+@pytest.mark.parametrize("constraints", [None, ()])
+def test_buried_designs_never_reach_a_front(calls, constraints):
+    front = rdk.pareto_front(SOFT, population=20, generations=5, seed=1, constraints=constraints)
+    buried = calls[0][1].buried
+    assert 0.1 < buried.mean() < 0.9                            # the first generation has both kinds
+    assert len(front) and not front.performance.buried.any()
+
+
+def test_a_buried_lane_is_infeasible_by_more_than_any_other():
+    scenario, study = ts.posed(SOFT)
+    _, problem = ts._nsga2(scenario, study, rdk.Model(), 50, 1, None, None)
+    genes = np.random.default_rng(0).random((200, 11))
+    out = problem.evaluate(genes, return_as_dictionary=True)
+    buried = rdk.evaluate(ts.decode(genes), scenario).buried
+    violation = np.maximum(out["G"], 0).sum(axis=1)
+    assert 0 < buried.sum() < 200
+    assert violation[buried].min() > 1e6 * max(violation[~buried].max(), 1)
+    assert np.all(out["F"][buried] == ts.FAILED)
+    assert np.all(np.isfinite(out["F"])) and np.all(np.isfinite(out["G"]))
+
+
+@pytest.mark.parametrize("constraints", [None, ()])
+def test_soil_that_carries_nothing_gives_an_empty_front(constraints):
+    soup = replace(MARE, soil=replace(SOFT.soil, frictional_modulus_kn_m_n2=0.01))
+    with pytest.warns(UserWarning, match="no design of 8 generations has a solution: the wheels are buried"):
+        front = rdk.pareto_front(soup, **SMALL, constraints=constraints)
+    assert len(front) == 0 and list(front.history) == [0] * 8
+
+
+def test_an_unreachable_constraint_gives_an_empty_front_that_says_by_how_much():
+    constraints = [("range_km", ">=", 85), ("total_mass_kg", "<=", 70)]
+    words = "no design of 8 generations met the constraints range_km >= 85, total_mass_kg <= 70; the nearest "
+    with pytest.warns(UserWarning, match=words + "missed them by 5 in range_km$"):
+        front = rdk.pareto_front(MARE, **SMALL, constraints=constraints)
+    assert front.message.endswith("missed them by 5 in range_km")       # the mare's limit is 80 km
+    assert len(front) == len(front.designs) == len(front.to_frame()) == 0
+    assert list(front.history) == [0] * 8
+
+
+# ---- bad input -------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("changed, error, words", [
+    (dict(scenario="mare"), TypeError, "scenario must be a Scenario; got str"),
+    (dict(scenario=replace(MARE, slope_deg=[1, 2])), ValueError, "scenario must be a single mission"),
+    (dict(model=0.8), TypeError, "model must be a Model; got float"),
+    (dict(model=rdk.Model(shear_scale=[0.7, 1])), ValueError, "model must hold single numbers"),
+    (dict(population=3), ValueError, "population must be a whole number, at least 4; got 3"),
+    (dict(population=10.5), ValueError, "population"),
+    (dict(generations=0), ValueError, "generations must be a whole number, at least 1; got 0"),
+    (dict(generations="9"), ValueError, "generations"), (dict(generations=[3]), ValueError, "generations"),
+    (dict(seed=-1), ValueError, "seed must be a whole number, zero or more; got -1"),
+    (dict(seed=1.5), ValueError, "seed"), (dict(seed=True), ValueError, "seed"),
+    (dict(objectives={"speed": "max"}), ValueError, "no Performance field 'speed'; choose from range_km"),
+    (dict(objectives={"mass": "min"}), ValueError, "no Performance field 'mass'"),
+    (dict(objectives={"range_km": "up"}), ValueError, "range_km must be 'max' or 'min'; got 'up'"),
+    (dict(objectives={}), ValueError, "at least one"),
+    (dict(objectives="range_km"), ValueError, "objectives must be a dictionary"),
+    (dict(constraints=("range_km", ">=", 1)), ValueError, "constraints must be a list of"),
+    (dict(constraints=[("range_km", ">", 1)]), ValueError, "constraints must be like"),
+    (dict(constraints=[("range_km", ">=")]), ValueError, "constraints must be like"),
+    (dict(constraints=[("reach", ">=", 1)]), ValueError, "constraints: no Performance field 'reach'"),
+    (dict(constraints=[("range_km", ">=", "far")]), ValueError, "limit of range_km"),
+    (dict(constraints=[("range_km", ">=", math.nan)]), ValueError, "limit of range_km"),
+    (dict(constraints=[("range_km", ">=", 9), ("range_km", "<=", 8)]), ValueError,
+     "contradict each other: range_km >= 9 and <= 8"),
+    (dict(start=3), TypeError, "start must be a Front or a Design; got int"),
+    (dict(bounds={"wheel_radius_m": (0.2, 0.1)}), ValueError, "wheel_radius_m must rise")])
+def test_bad_arguments_of_a_search_are_named(changed, error, words):
+    with pytest.raises(error, match=words):
+        rdk.pareto_front(**(dict(scenario=MARE, population=6, generations=2) | changed))
+
+
+def test_a_scenario_with_impossible_values_is_refused_when_it_is_made():
+    for bad in (dict(slope_deg=90), dict(duty_cycle=1.2), dict(duration_earth_days=0), dict(latitude_deg=95),
+                dict(traverse_limit_km=-1), dict(payload_mass_kg=math.nan)):
+        with pytest.raises(ValueError, match=next(iter(bad))):
+            replace(MARE, **bad)
+
+
+# ---- hypervolume -----------------------------------------------------------------------------------------
+
+THREE = {"range_km": "max", "total_mass_kg": "min", "slope_capability_deg": "max"}
+
+
+def random_objectives(count, seed=0):
+    u = np.random.default_rng(seed).random((count, 3))
+    return u, np.stack([-80 * u[:, 0], 80 * u[:, 1], -45 * u[:, 2]], axis=1)
+
+
+def test_hypervolume_of_one_point_is_a_product():
+    _, F = random_objectives(1)
+    u = np.array([1 + F[0, 0] / 80, F[0, 1] / 80, 1 + F[0, 2] / 45])
+    np.testing.assert_allclose(ts.hypervolume(F, THREE, MARE), np.prod(1.05 - u), rtol=1e-12)
+    assert ts.hypervolume(np.array([[-80.0, 0.0, -45.0]]), THREE, MARE) == pytest.approx(1.05 ** 3, rel=1e-12)
+    assert ts.hypervolume(np.empty((0, 3)), THREE, MARE) == 0
+
+
+@pytest.mark.parametrize("count", [2, 7, 20])
+def test_hypervolume_equals_the_sum_over_the_cells_of_the_grid(count):
+    _, F = random_objectives(count, seed=count)
+    points = np.stack([1 + F[:, 0] / 80, F[:, 1] / 80, 1 + F[:, 2] / 45], axis=1)
+    edges = [np.append(np.sort(points[:, i]), 1.05) for i in range(3)]
+    corner = np.stack(np.meshgrid(*(e[:-1] for e in edges), indexing="ij"), axis=-1)
+    inside = (points <= corner[..., None, :] + 1e-15).all(-1).any(-1)
+    cells = np.prod(np.stack(np.meshgrid(*map(np.diff, edges), indexing="ij")), axis=0)
+    # exact but for rounding
+    np.testing.assert_allclose(ts.hypervolume(F, THREE, MARE), cells[inside].sum(), rtol=1e-10)
+
+
+def test_hypervolume_of_a_front_against_monte_carlo(small):
+    points = minimised(small) / [80, 80, 45] + [1, 0, 1]
+    sample = 1.05 * np.random.default_rng(0).random((40_000, 1, 3))
+    hit = np.concatenate([(points <= part).all(-1).any(-1) for part in np.array_split(sample, 40)])
+    # four standard errors of the sample's share
+    tolerance = 4 * hit.std() / math.sqrt(len(hit)) * 1.05 ** 3
+    np.testing.assert_allclose(small.history[-1], hit.mean() * 1.05 ** 3, atol=tolerance)
+
+
+def test_hypervolume_is_clipped_scaled_by_the_limit_and_undefined_without_a_scale():
+    F = np.array([[-80.0, 200.0, -10.0]])
+    assert ts.hypervolume(F, THREE, MARE) == ts.hypervolume(np.array([[-80.0, 80.0, -10.0]]), THREE, MARE)
+    assert ts.hypervolume(F, THREE, replace(MARE, traverse_limit_km=160.0)) < ts.hypervolume(F, THREE, MARE)
+    for limit in (math.inf, 0.0):
+        assert math.isnan(ts.hypervolume(F, THREE, replace(MARE, traverse_limit_km=limit)))
+    assert math.isnan(ts.hypervolume(F[:, :1], {"slip": "min"}, MARE))
+
+
+def test_history_is_one_value_a_generation_and_rises(small):
+    assert small.history.shape == (8,) and len(small.objective_history) == 8
+    # a front of at most 12 may drop a point that it had: it need not rise in every step
+    assert small.history[-1] > 1.02 * small.history[0] and np.all(small.history > 0)
+    last = np.sort(small.objective_history[-1], axis=0)
+    # the last bits depend on a lane's place in its batch
+    np.testing.assert_allclose(last, np.sort(minimised(small), axis=0), rtol=1e-9)
+
+
+# ---- studies ---------------------------------------------------------------------------------------------
+
+TINY = dict(population=8, generations=3, seeds=[1, 2], shear_scales=[1.0, 1.15])
+SCENARIOS = [rdk.scenario("crater_rim_survey"), HIGHLAND]
+
+
+@pytest.fixture(scope="module")
+def serial():
+    return rdk.study(SCENARIOS, **TINY)
+
+
+def assert_same_study(one, other):
+    assert [case.label for case in one] == [case.label for case in other]
+    for a, b in zip(one.values(), other.values()):
+        assert_same_bits(a, b)
+
+
+def settings(case):
+    return case.scenario.name, case.seed, case.shear_scale, case.obstacle_height_m
+
+
+def test_a_study_is_every_combination_in_order(serial):
+    assert [settings(c) for c in serial] == [(s.name, seed, scale, 0.0) for s in SCENARIOS for seed in (1, 2)
+                                             for scale in (1.0, 1.15)]
+    for case, front in serial.items():
+        model = rdk.Model(shear_scale=case.shear_scale)
+        alone = rdk.pareto_front(case.scenario, 8, 3, case.seed, model=model)
+        assert_same_bits(front, alone)
+
+
+def test_a_process_pool_gives_the_same_bits(serial):
+    spawned = multiprocessing.get_context("spawn")              # nothing is inherited: everything travels
+    with ProcessPoolExecutor(2, mp_context=spawned) as pool:
+        assert_same_study(serial, rdk.study(SCENARIOS, **TINY, executor=pool))
+
+
+def test_threads_give_the_same_bits(serial):
+    with ThreadPoolExecutor(3) as pool:
+        assert_same_study(serial, rdk.study(SCENARIOS, **TINY, executor=pool))
+
+
+def test_a_dask_cluster_gives_the_same_bits(serial, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    options = dict(n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=tmp_path)
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
+        found = rdk.study(SCENARIOS, **TINY, executor=client.get_executor(), folder=tmp_path / "fronts")
+    assert_same_study(serial, found)
+    assert len(list((tmp_path / "fronts").glob("*.json"))) == 8
+
+
+def test_defaults_are_each_scenarios_seed_and_obstacles_reach_the_search():
+    without_seed = replace(MARE, study=replace(MARE.study, seed=None))
+    found = rdk.study([SCENARIOS[0], without_seed], population=8, generations=2, obstacle_heights_m=[0.0, 0.12])
+    assert [(c.seed, c.obstacle_height_m) for c in found] == [(12, 0.0), (12, 0.12), (0, 0.0), (0, 0.12)]
+    for case, front in found.items():
+        assert len(front) and np.all(front.performance.obstacle_capability_m >= case.obstacle_height_m)
+
+
+def test_an_empty_front_in_a_study_is_a_message_and_no_warning():
+    hard = replace(MARE, study=replace(MARE.study, constraints=(("range_km", ">=", 81.0),)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        (front,) = rdk.study([hard], population=4, generations=2).values()
+    assert len(front) == 0 and "range_km >= 81" in front.message
+
+
+def test_progress_of_a_study(serial):
+    seen = []
+    found = rdk.study(SCENARIOS, **TINY, on_front=lambda *progress: seen.append(progress))
+    assert [s[:2] for s in seen] == [(i, 8) for i in range(1, 9)]
+    assert [s[2] for s in seen] == list(found) and [s[3] for s in seen] == list(found.values())
+
+
+@pytest.fixture
+def searches(monkeypatch):
+    """Seeds of the fronts that a study computes."""
+    seen, search = [], ts.pareto_front
+
+    def counted(scenario, population, generations, seed, **options):
+        seen.append((scenario.name, seed, options["model"].shear_scale))
+        return search(scenario, population, generations, seed, **options)
+
+    monkeypatch.setattr(ts, "pareto_front", counted)
+    return seen
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_an_interrupted_study_keeps_what_it_has_and_resumes(serial, tmp_path, searches, parallel):
+    def interrupt(finished, total, case, front):
+        if finished == 3:
+            raise KeyboardInterrupt
+
+    with ThreadPoolExecutor(1) as pool, pytest.raises(KeyboardInterrupt):
+        rdk.study(SCENARIOS, **TINY, folder=tmp_path, on_front=interrupt, executor=pool if parallel else None)
+    kept = sorted(path.name for path in tmp_path.iterdir())
+    assert len(kept) == 3 and all(name.endswith(".json") for name in kept)
+    assert len(searches) <= 5                                   # an interrupted pool starts nothing more
+    searches.clear()
+    seen = []
+    resumed = rdk.study(SCENARIOS, **TINY, folder=tmp_path, on_front=lambda *p: seen.append(p[0]))
+    assert_same_study(serial, resumed)
+    assert len(searches) == 5 and seen == list(range(1, 9))
+    searches.clear()
+    assert_same_study(serial, rdk.study(SCENARIOS, **TINY, folder=tmp_path))
+    assert not searches
+
+
+DAMAGES = {
+    "cut off": lambda text: text[:len(text) // 2],
+    "empty": lambda text: "",
+    "not JSON": lambda text: "<html>",
+    "another JSON": lambda text: "[1, 2]",
+    "no designs": lambda text: json.dumps(json.loads(text) | {"designs": {}}),
+    "no message": lambda text: json.dumps({k: v for k, v in json.loads(text).items() if k != "message"}),
+    "impossible design": lambda text: text.replace('"wheel_radius_m": [', '"wheel_radius_m": [-'),
+    "wrong history": lambda text: json.dumps(json.loads(text) | {"objective_history": [[[1.0]]]}),
+    "ragged": lambda text: text.replace('"wheel_radius_m": [', '"wheel_radius_m": [0.1, ')}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_file_is_computed_anew(tmp_path, searches, damage):
+    options = dict(population=8, generations=2, seeds=[1, 2], folder=tmp_path)
+    found = rdk.study([MARE], **options)
+    first = tmp_path / f"{next(iter(found)).label}.json"
+    sound = first.read_text(encoding="utf-8")
+    first.write_text(DAMAGES[damage](sound), encoding="utf-8")
+    assert first.read_text(encoding="utf-8") != sound
+    searches.clear()
+    with pytest.warns(UserWarning, match=f"{first.name} in .* is damaged and computed anew"):
+        again = rdk.study([MARE], **options)
+    assert [seed for _, seed, _ in searches] == [1]
+    assert_same_study(found, again)
+    assert first.read_text(encoding="utf-8") == sound
+
+
+def test_bytes_that_are_no_text_are_damage_too(tmp_path):
+    options = dict(population=4, generations=1, folder=tmp_path)
+    (case,) = rdk.study([MARE], **options)
+    (tmp_path / f"{case.label}.json").write_bytes(b"\xff\xfe\x00")
+    with pytest.warns(UserWarning, match="damaged"):
+        rdk.study([MARE], **options)
+
+
+def test_a_file_is_complete_or_absent(tmp_path, monkeypatch):
+    def full(*args):
+        raise OSError("no space left on device")
+
+    options = dict(population=4, generations=1, folder=tmp_path)
+    with monkeypatch.context() as broken:
+        broken.setattr(ts.os, "replace", full)
+        with pytest.raises(OSError, match="no space"):
+            rdk.study([MARE], **options)
+    assert not list(tmp_path.glob("*.json"))
+    rdk.study([MARE], **options)
+    assert len(list(tmp_path.glob("*.json"))) == 1
+
+
+def test_every_setting_has_a_file_of_its_own_and_equal_settings_share_one():
+    nominal = ts.Case(MARE, 1, 1.0, 0.0, 8, 2, rdk.Model())
+
+    def label(scenario=MARE, **changed):
+        return replace(nominal, scenario=scenario, **changed).label
+
+    others = [label(replace(MARE, slope_deg=15.0000001)), label(replace(MARE, soil=rdk.soil("apollo-loose"))),
+              label(replace(MARE, study=HIGHLAND.study)), label(model=rdk.Model(dust_factor=0.8)),
+              label(seed=2), label(shear_scale=0.7), label(obstacle_height_m=0.1), label(population=9),
+              label(generations=3)]
+    assert len({label(), *others}) == 10
+    assert label() == label(rdk.scenario(MARE.name))
+
+
+def test_numpy_numbers_and_iterators_name_the_same_files(tmp_path, searches):
+    rdk.study([MARE], population=4, generations=1, seeds=[1, 2], shear_scales=[0.85], folder=tmp_path)
+    searches.clear()
+    rdk.study(iter([MARE]), population=4, generations=1, seeds=np.arange(1, 3), shear_scales=np.array([0.85]),
+              folder=tmp_path)
+    assert not searches and len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_scenario_may_have_any_name(tmp_path):
+    folder = tmp_path / "deep" / "er"
+    rdk.study([replace(MARE, name="mare / flat: 5°?")], population=4, generations=1, folder=folder)
+    (path,) = folder.iterdir()
+    assert path.name.startswith("mare-flat-5") and path.suffix == ".json"
+
+
+@pytest.mark.parametrize("changed, words", [
+    (dict(scenarios=[]), "scenarios must not be empty"), (dict(seeds=[]), "seeds must not be empty"),
+    (dict(shear_scales=[]), "shear_scales must not be empty"),
+    (dict(obstacle_heights_m=[]), "obstacle_heights_m must not be empty"),
+    (dict(scenarios=MARE), "scenarios must be a list of Scenario; got the single 'equatorial_mare_traverse'"),
+    (dict(seeds=[1, -2]), "seeds must be a whole number, zero or more; got -2"),
+    (dict(seeds=["a"]), "seeds"),
+    (dict(shear_scales=[1.0, 0.0]), "shear_scales must be positive and finite; got 0.0"),
+    (dict(obstacle_heights_m=[-0.1]), "obstacle_heights_m must be zero or more"),
+    (dict(population=3), "population"), (dict(generations=0), "generations")])
+def test_bad_arguments_of_a_study_are_named(changed, words):
+    with pytest.raises(ValueError, match=words):
+        rdk.study(**(dict(scenarios=[MARE], population=4, generations=1) | changed))
+
+
+def test_an_error_in_a_worker_reaches_the_caller():
+    many = replace(MARE, slope_deg=np.array([1.0, 2.0]))
+    with ThreadPoolExecutor(2) as pool, pytest.raises(ValueError, match="single mission"):
+        rdk.study([many, MARE], population=4, generations=1, executor=pool)
