@@ -1222,3 +1222,31 @@ def node_temperatures(heat_w, temperature_c, limits_c, marks):
     ax.set(xlim=(heat_w[0], heat_w[-1]))
     ax.legend(fontsize=8.5)
     return figure
+
+
+# ---- design your rover (notebook 12) --------------------------------------------------------------------------
+
+def demand_chances(mass_kg, shares, wanted=0.9):
+    """How often each demand of a mission holds in the uncertain inputs, for designs from light to heavy.
+
+    Parameters
+    ----------
+    mass_kg : ndarray
+        Nominal mass of each design, rising.
+    shares : dict of str to ndarray
+        Demand in words -> share of the draws in which it holds, one a design.
+    wanted : float
+        The share asked for, drawn as a line.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure, ax = _axes(figsize=(6.8, 4.0))
+    for i, (label, share) in enumerate(shares.items()):
+        ax.plot(mass_kg, 100 * share, color=COLOURS[i % 4], linestyle=DASHES[i % 4], marker=MARKERS[i], markersize=5,
+                label=label)
+    ax.axhline(100 * wanted, color=GREY, linewidth=1)
+    ax.set(xlabel="nominal mass (kg)", ylabel="holds in (% of the draws)", ylim=(-3, 103))
+    figure.legend(loc="outside upper center", ncols=2, fontsize=9)
+    return figure
