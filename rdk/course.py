@@ -1,0 +1,167 @@
+"""Self-checks of the notebooks' exercises: `rdk.check("01.2", answer)`.
+
+An exercise computes its answer with `rdk`; no answer is stored. Typical mistakes are computed too, each with the hint
+meant for it. The exercises themselves are in `exercises`.
+"""
+from __future__ import annotations
+
+import dataclasses
+from functools import cached_property
+from typing import Callable
+
+import numpy as np
+
+from .design import Design
+
+EXERCISES = {}
+"""Every exercise by its number, filled by `exercises`."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Exercise:
+    """How an exercise is answered and judged, and what to say to a wrong answer.
+
+    Attributes
+    ----------
+    number : str
+        Notebook and exercise, such as "01.2".
+    answer : callable
+        Returns a right answer: a number, a list of numbers, a word, a set of words, True or False, or a Design.
+    hint : str
+        What to look at, for a wrong answer that no mistake explains.
+    mistakes : dict of str to callable
+        The hint for each typical mistake, and a function that makes it.
+    within : float
+        Relative tolerance of numbers.
+    judge : callable or None
+        For tasks with many right answers: takes the answer, returns "" or what is still missing.
+    choices : tuple of str
+        Words to choose from.
+    """
+    number: str
+    answer: Callable
+    hint: str
+    mistakes: dict = dataclasses.field(default_factory=dict)
+    within: float = 0.02
+    judge: Callable | None = None
+    choices: tuple = ()
+
+    @cached_property
+    def expected(self):
+        """A right answer, computed once."""
+        return self.answer()
+
+
+@dataclasses.dataclass(frozen=True)
+class Verdict:
+    """Whether an answer is right, and what to look at when it is not; shows itself as a sentence."""
+    right: bool
+    message: str
+
+    def __bool__(self):
+        return self.right
+
+    def __repr__(self):
+        return self.message
+
+
+def exercise(number, answer, hint, mistakes=None, **options):
+    """Register an exercise; the arguments are the attributes of `Exercise`."""
+    if number in EXERCISES:
+        raise ValueError(f"exercise {number} is registered twice")
+    EXERCISES[number] = Exercise(number, answer, hint, mistakes or {}, **options)
+
+
+def check(number, answer):
+    """Tell whether the answer to an exercise is right and, when it is not, what to look at.
+
+    Parameters
+    ----------
+    number : str
+        Notebook and exercise, such as "01.2".
+    answer : float, sequence of float, str, set of str, bool or Design
+        What the exercise asks for, in the unit that it names. An ellipsis, `...`, stands for no answer yet.
+
+    Returns
+    -------
+    Verdict
+        True where right; shows itself as a sentence.
+
+    Raises
+    ------
+    ValueError
+        If there is no such exercise, or the answer is not of the kind asked for.
+
+    Examples
+    --------
+    >>> check("01.1", 2.0)
+    Not yet. That would be proportion: twice the load, twice the rut. Sinkage is a weaker power of the load.
+    >>> bool(check("01.1", 2 ** (2 / 3)))
+    True
+    """
+    from . import exercises                              # noqa: F401  fills EXERCISES
+    number = str(number)
+    if number not in EXERCISES:
+        near = [n for n in EXERCISES if n[:2] == number[:2]] or list(EXERCISES)
+        raise ValueError(f"no exercise {number!r}; choose from {', '.join(sorted(near))}")
+    task = EXERCISES[number]
+    if answer is ...:
+        return Verdict(False, "No answer yet: put yours in place of the three dots and run the cell again.")
+    answer = _of_kind(task, answer)
+    if task.judge is not None:
+        missing = task.judge(answer)
+        return Verdict(False, "Not yet. " + missing) if missing else Verdict(True, "Right: it does what was asked.")
+    if _agree(answer, task.expected, task.within):
+        return Verdict(True, "Right.")
+    explained = (hint for hint, wrong in task.mistakes.items() if _agree(answer, wrong(), task.within))
+    return Verdict(False, "Not yet. " + next(explained, task.hint))
+
+
+def _of_kind(task, answer):
+    """The answer as the kind of thing that the exercise asks for, or a ValueError that says what it asks for."""
+    expected, asks = task.expected, f"exercise {task.number} asks for"
+    got = f"; got {answer!r}" if np.size(answer) < 10 and not isinstance(answer, Design) else (
+        f"; got a {type(answer).__name__}")
+    if isinstance(expected, Design):
+        if not isinstance(answer, Design) or answer.shape:
+            raise ValueError(f"{asks} one Design{got}")
+        return answer
+    if isinstance(expected, (str, set)):
+        words = {answer} if isinstance(expected, str) else answer
+        some = f"one of the words {', '.join(task.choices)}" if isinstance(expected, str) else (
+            f"a set of words from {', '.join(task.choices)}")
+        if not isinstance(words, (set, list, tuple)) or not all(isinstance(word, str) for word in words) or (
+                not {word.strip().lower() for word in words} <= {word.lower() for word in task.choices}):
+            raise ValueError(f"{asks} {some}{got}")
+        words = {word.strip().lower() for word in words}
+        return words if isinstance(expected, set) else words.pop()
+    if isinstance(expected, (bool, np.bool_)):
+        if not isinstance(answer, (bool, np.bool_)):
+            raise ValueError(f"{asks} True or False{got}")
+        return bool(answer)
+    shape = np.shape(expected)
+    asks += " one number" if not shape else f" {shape[0]} numbers" if len(shape) == 1 else f" numbers of shape {shape}"
+    try:
+        given = np.asarray(answer)
+    except ValueError:                                   # ragged
+        raise ValueError(asks + got) from None
+    if given.shape == (1,) and not shape:
+        given = given[0]
+    if given.dtype.kind not in "iuf" or np.shape(given) != shape:
+        raise ValueError(asks + got)
+    if not np.isfinite(given).all():
+        raise ValueError(f"{asks}, finite{got}")
+    return given
+
+
+def _agree(answer, expected, within):
+    """Whether an answer of the right kind equals the expected one, numbers within a relative tolerance."""
+    if isinstance(expected, str):
+        return answer == expected.lower()
+    if isinstance(expected, set):
+        return answer == {word.lower() for word in expected}
+    if isinstance(expected, (bool, np.bool_)):
+        return answer == expected
+    wanted = np.asarray(expected, float)
+    scale = np.where(wanted == 0, np.max(np.abs(wanted)) or 1.0, np.abs(wanted))
+    return bool(np.all(np.abs(answer - wanted) <= (within + 1e-9) * scale))
