@@ -3,6 +3,7 @@
 Usage, from anywhere: python notebooks/execute.py [01_wheel_on_soil.ipynb ...]    (no name: all of them)
 """
 
+import base64
 import os
 import sys
 import time
@@ -31,6 +32,15 @@ def execute(path):
             output.get("data", {}).pop("application/vnd.jupyter.widget-view+json", None)  # a random model id
     notebook.metadata = METADATA
     nbformat.write(notebook, path)
+    if path.name.startswith("00_"):
+        (FOLDER / "overview.png").write_bytes(last_picture(notebook))
+
+
+def last_picture(notebook):
+    """Bytes of the last picture in a notebook: that of 00 stands in the README too."""
+    pictures = [output.data["image/png"] for cell in notebook.cells for output in cell.get("outputs", [])
+                if "image/png" in output.get("data", {})]
+    return base64.b64decode(pictures[-1])
 
 
 if __name__ == "__main__":

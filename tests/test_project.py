@@ -3,9 +3,11 @@
 import re
 import shutil
 import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
+import nbformat
 import pytest
 import yaml
 from packaging.requirements import Requirement
@@ -82,3 +84,10 @@ def test_no_committed_file_names_a_machine_or_a_registry():
             text = path.read_bytes().decode("utf-8", errors="ignore")
             found = re.search(f"{home}|{registry}", text)
             assert not found, (name, text[max(found.start() - 40, 0):found.end() + 40])
+
+
+def test_the_readmes_picture_is_the_one_that_notebook_00_draws():
+    notebook = nbformat.read(REPO / "notebooks/00_start_here.ipynb", as_version=4)
+    sys.path.insert(0, str(REPO / "notebooks"))
+    from execute import last_picture
+    assert (REPO / "notebooks/overview.png").read_bytes() == last_picture(notebook)
