@@ -753,7 +753,8 @@ def single_wheel_comparison(points, curves):
                     axes.plot(seen.slip, seen[quantity], marker, color=colour, label=f"{wheel}, measured")
             axes.set_ylabel(y_label)
             axes.axhline(0, color=GREY, linewidth=0.8)
-    grid[0, 0].legend(frameon=False, fontsize=9)
+    figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False,
+                  fontsize=9)
     grid[2, 1].text(0.95, 0.1, "no torque in the data", transform=grid[2, 1].transAxes, ha="right",
                     fontsize=9)
     return figure
@@ -811,7 +812,7 @@ def sinkage_bias(exit_share, sinkage_mm, slip, sinkage_by_slip_mm, measured):
     figure, axes = _axes(1, 2, figsize=(9, 3.6), sharey=True)
     _lines(axes[0], exit_share, sinkage_mm, r"exit angle behind the bottom, $-θ_2/θ_1$ (1)", "sinkage (mm)")
     at_rest = measured.sinkage_mm[measured.slip == 0]
-    axes[0].plot(np.zeros(len(at_rest)), at_rest, "s", color=BLACK, clip_on=False, label="measured, slip 0")
+    axes[0].axhline(at_rest.mean(), color=BLACK, linestyle=":", label="measured, slip 0")
     _lines(axes[1], slip, sinkage_by_slip_mm, "slip s", "sinkage (mm)")
     axes[1].plot(measured.slip, measured.sinkage_mm, "s", color=BLACK, label="measured")
     for panel in axes:
@@ -865,6 +866,8 @@ def sinkage_against_factor(factor, sinkage_mm, measured_mm):
     _lines(axes, factor, sinkage_mm, "factor on the parameter (1)", "sinkage (mm)")
     axes.axhspan(*measured_mm, color=GREY, alpha=0.3, linewidth=0, label="measured, all slips")
     axes.set(xscale="log", yscale="log")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
     axes.legend(frameon=False, fontsize=9)
     return figure
 
@@ -893,7 +896,7 @@ def median_spread(spreads):
     axes.set(xscale="log", xlabel="median of |error| (%)")
     axes.set_xticks([3, 10, 30, 100, 300], ["3", "10", "30", "100", "300"])
     axes.minorticks_off()
-    axes.legend(frameon=False, fontsize=9)
+    figure.legend(loc="outside upper center", ncols=2, frameon=False, fontsize=9)
     return figure
 
 
@@ -990,12 +993,12 @@ def fixed_overheads(masses, mass_kg, shares):
     figure, ax = _axes()
     for (label, share), colour, dash in zip(shares.items(), COLOURS, DASHES):
         ax.plot(mass_kg, share, color=colour, linestyle=dash, label=label)
-    for row in masses.itertuples():
+    for k, row in enumerate(masses.itertuples()):
         four = row.wheel_count == 4
         ax.plot(row.published_mass_kg, row.fixed_overhead_pct, MARKERS[0 if four else 1],
                 color=BLUE if four else ORANGE, markersize=7)
-        ax.annotate(row.rover, (row.published_mass_kg, row.fixed_overhead_pct), (6, 4), textcoords="offset points",
-                    fontsize=9)
+        ax.annotate(row.rover, (row.published_mass_kg, row.fixed_overhead_pct), (-6, -11) if k % 2 else (6, 4),
+                    textcoords="offset points", fontsize=9, ha="right" if k % 2 else "left")
     ax.set(xscale="log", xlabel="published mass (kg)", ylabel="fixed overhead (% of published mass)", ylim=(0, None))
     ax.set_xticks([5, 10, 20, 50, 100, 200], ["5", "10", "20", "50", "100", "200"])
     ax.minorticks_off()
@@ -1158,7 +1161,7 @@ def efficiency_stack(factors, others):
     left = np.cumprod(list(factors.values()))
     ax.bar(range(len(left)), left, color="#9ccbe6", edgecolor=BLUE, width=0.6)
     for k, (value, factor) in enumerate(zip(left, factors.values())):
-        ax.text(k, value + 0.004, f"x {factor:.2f}\n{value:.3f}", ha="center", fontsize=9)
+        ax.text(k, 0.1, f"x {factor:.2f}\n= {value:.3f}", ha="center", va="center", fontsize=9)
     for (label, value), colour, dash in zip(others.items(), (ORANGE, GREEN), DASHES[1:]):
         ax.axhline(value, color=colour, linestyle=dash, label=f"{label}: {value:.3f}")
     ax.set_xticks(range(len(left)), factors)
@@ -1188,7 +1191,7 @@ def peak_solar(flown):
         ax.hlines(row.published_peak_w, -0.5, 0.5, color=BLACK, linestyle="--", label="published")
         spread = [[row.clean_peak_w - row.clean_peak_low_w], [row.clean_peak_high_w - row.clean_peak_w]]
         ax.errorbar([0], [row.clean_peak_w], spread, fmt="o", color=BLUE, capsize=5, label="clean, cell 0.28 to 0.32")
-        ax.set(title=row.rover, xticks=[], xlim=(-0.6, 0.6), ylim=(0, 1.2 * row.clean_peak_high_w),
+        ax.set(title=row.rover, xticks=[], xlim=(-0.6, 0.6), ylim=(0, 1.1 * max(row.clean_peak_high_w, row.published_high_w)),
                ylabel="peak solar power (W)")
         ax.grid(axis="x", visible=False)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=9)

@@ -2,6 +2,7 @@
 
 import matplotlib
 import numpy as np
+import pandas as pd
 import pytest
 
 matplotlib.use("Agg")
@@ -9,7 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 import rdk  # noqa: E402
-from rdk import plots, terramechanics  # noqa: E402
+from rdk import plots, terramechanics, validation  # noqa: E402
 
 WHEEL, SOIL = rdk.Wheel(0.10, 0.08, 0.015, 14), rdk.soil("apollo-nominal")
 X = np.linspace(0.0, 1.0, 7)
@@ -59,7 +60,8 @@ def test_shear_modulus_and_transition_are_marked():
 
 def test_stress_on_rim_is_to_scale():
     angle = np.linspace(0, 0.35, 101)
-    cases = {f"slip {s}": (angle, terramechanics.contact_stress(WHEEL, SOIL, 0.35, s, angle)) for s in (-0.2, 0.6)}
+    cases = {f"slip {s}": (angle, terramechanics.contact_stress(WHEEL, SOIL, 0.35, s, angle))
+             for s in (-0.2, 0.6)}
     figure = plots.stress_on_rim(WHEEL.radius_m, cases)
     assert_units(figure)
     scales = []
@@ -77,7 +79,7 @@ def test_stress_on_rim_is_to_scale():
         assert (np.sign(arrows.U) == (1 if label == "slip 0.6" else -1)).all()
         marks = [line.get_data() for line in axes.get_lines()[3:6]]
         found = [np.arctan2(x[0], -y[0]) for x, y in marks]
-        np.testing.assert_allclose(found, [0.35, stress.transition_angle_rad[0], 0], atol=1e-12)     # rounding
+        np.testing.assert_allclose(found, [0.35, stress.transition_angle_rad[0], 0], atol=1e-12)   # rounding
     np.testing.assert_allclose(scales, scales[0], rtol=1e-12)
     bar = figure.axes[0].get_lines()[-1].get_xdata()
     written = float(figure.axes[0].texts[-1].get_text().split()[0])
@@ -85,7 +87,8 @@ def test_stress_on_rim_is_to_scale():
 
 
 def test_quadrature_error():
-    points, errors = {"a": np.array([2, 4]), "b": np.array([3, 9])}, {"a": np.array([0.1, 0.0]), "b": [1e-3, 1e-9]}
+    points = {"a": np.array([2, 4]), "b": np.array([3, 9])}
+    errors = {"a": np.array([0.1, 0.0]), "b": [1e-3, 1e-9]}
     figure = plots.quadrature_error(points, errors, 100)
     assert_units(figure)
     drawn = lines(figure.axes[0])
@@ -126,5 +129,65 @@ def test_load_and_pull_marks_the_slope_on_the_circle():
     np.testing.assert_array_equal(drawn["a"], [load, pull])
     x, y = drawn[f"slope {slope:.1f}°"]
     np.testing.assert_allclose(np.hypot(x, y), 6.0, rtol=1e-12)
-    np.testing.assert_allclose(np.interp(x, load, pull), y, rtol=1e-4)   # the curve is drawn through 200 points
+    np.testing.assert_allclose(np.interp(x, load, pull), y, rtol=1e-4)   # a curve of 200 points
     np.testing.assert_allclose(np.hypot(*drawn["weight on the wheel"]), 6.0, rtol=1e-12)
+
+
+def test_comparison_draws_every_point_and_curve():
+    points, curves = validation.single_wheel(), validation.single_wheel_curves(np.linspace(0, 0.6, 7))
+    figure = plots.single_wheel_comparison(points, curves)
+    assert_units(figure)
+    grid = np.array(figure.axes).reshape(3, 3)
+    seen = 0
+    for column, test in enumerate(points.experiment.unique()):
+        for axes, quantity in zip(grid[:, column], validation.QUANTITIES):
+            for label, (x, y) in lines(axes).items():
+                wheel, kind = label.split(", ")
+                table, name = (points, quantity) if kind == "measured" else (curves, "model_" + quantity)
+                rows = table[(table.experiment == test) & (table.wheel == wheel)].dropna(subset=name)
+                np.testing.assert_array_equal([x, y], [rows.slip, rows[name]])
+                seen += len(x) * (kind == "measured")
+    assert seen == points[list(validation.QUANTITIES)].notna().to_numpy().sum()
+
+
+def test_errors_are_signed_and_in_the_units_of_the_axes():
+    points = validation.single_wheel()
+    pull, sinkage = plots.single_wheel_errors(points).axes
+    assert_units(pull.figure)
+    drawn = [np.concatenate([line.get_ydata() for line in axes.get_lines() if len(line.get_xdata()) > 2])
+             for axes in (pull, sinkage)]
+    expected = [100 * (points.model_drawbar_pull_n - points.drawbar_pull_n) / points.vertical_load_n,
+                points.model_sinkage_mm - points.sinkage_mm]
+    for ours, theirs in zip(drawn, expected):
+        np.testing.assert_allclose(np.sort(ours), np.sort(theirs), rtol=1e-12)       # the same arithmetic
+    low = lines(pull)["Hurrell 2025, grousered"][1]
+    assert low[0] < 0 < low[-1]                          # too little pull at small slip, too much at large
+
+
+def test_bias_resistance_and_factor():
+    measured = pd.DataFrame(dict(wheel="smooth", slip=[0.0, 0.3], sinkage_mm=[5.0, 9.0],
+                                 resistance_n=[6.0, 7.0]))
+    figure = plots.sinkage_bias(X, {"a": X}, X, {"b": 2 * X}, measured)
+    left, right = (lines(axes) for axes in figure.axes)
+    np.testing.assert_array_equal(left["a"], [X, X])
+    np.testing.assert_array_equal(left["measured, slip 0"][1], 5.0)
+    np.testing.assert_array_equal(right["b"], [X, 2 * X])
+    np.testing.assert_array_equal(right["measured"], [[0.0, 0.3], [5.0, 9.0]])
+    figure = plots.resistance_against_slip(X, {"smooth": X}, measured)
+    np.testing.assert_array_equal(lines(figure.axes[0])["smooth, kernel"], [X, X])
+    np.testing.assert_array_equal(lines(figure.axes[0])["smooth, measured"], [[0.0, 0.3], [6.0, 7.0]])
+    figure = plots.sinkage_against_factor(X + 1, {"k": X + 2}, (1.0, 8.0))
+    np.testing.assert_array_equal(lines(figure.axes[0])["k"], [X + 1, X + 2])
+    assert figure.axes[0].patches[0].get_height() == 7.0 and figure.axes[0].patches[0].get_y() == 1.0
+
+
+def test_median_spread_puts_each_row_beside_its_name():
+    table = validation.bootstrap_medians(samples=50)
+    axes = plots.median_spread({"a": table, "b": table.assign(low_pct=table.low_pct / 2)}).axes[0]
+    names = [text.get_text() for text in axes.get_yticklabels()]
+    assert names[0] == "Ding 2011, drawbar pull" and names[-1] == "Wang & Han 2016, torque"
+    for bars, points, factor in zip(axes.collections, axes.get_lines(), (1.0, 0.5)):
+        ends = np.array([segment[:, 0] for segment in bars.get_segments()])
+        np.testing.assert_allclose(ends, np.c_[factor * table.low_pct, table.high_pct], rtol=1e-12)
+        np.testing.assert_array_equal(points.get_xdata(), table.median_abs_error_pct)
+        np.testing.assert_allclose(points.get_ydata() - axes.get_yticks(), 0, atol=0.2)      # beside its name
