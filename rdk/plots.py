@@ -995,10 +995,11 @@ def fixed_overheads(masses, mass_kg, shares):
         ax.plot(mass_kg, share, color=colour, linestyle=dash, label=label)
     for k, row in enumerate(masses.itertuples()):
         four = row.wheel_count == 4
+        below = four and k % 2                           # neighbours' names must not meet
         ax.plot(row.published_mass_kg, row.fixed_overhead_pct, MARKERS[0 if four else 1],
                 color=BLUE if four else ORANGE, markersize=7)
-        ax.annotate(row.rover, (row.published_mass_kg, row.fixed_overhead_pct), (-6, -11) if k % 2 else (6, 4),
-                    textcoords="offset points", fontsize=9, ha="right" if k % 2 else "left")
+        ax.annotate(row.rover, (row.published_mass_kg, row.fixed_overhead_pct), (-6, -11) if below else (6, 4),
+                    textcoords="offset points", fontsize=9, ha="right" if below else "left")
     ax.set(xscale="log", xlabel="published mass (kg)", ylabel="fixed overhead (% of published mass)", ylim=(0, None))
     ax.set_xticks([5, 10, 20, 50, 100, 200], ["5", "10", "20", "50", "100", "200"])
     ax.minorticks_off()
