@@ -184,11 +184,18 @@ def test_studies_and_uncertainties_speak_of_what_exists():
         goals = [re.fullmatch(r"(\w+):(max|min)", goal)[1] for goal in entries(row["objectives"])]
         limits = [re.fullmatch(r"(\w+) [<>]= [\d.]+", limit)[1] for limit in entries(row["constraints"])]
         assert set(goals + limits) <= metrics and len(goals) >= 2
+    canonical = [row["scenario"] for row in TABLES["scenarios.csv"] if row["kind"] == "canonical"]
+    assert sorted(row["scenario"] for row in TABLES["studies.csv"]) == sorted(canonical)
     for row in TABLES["uncertainties.csv"]:
         record = getattr(rdk, row["record"].title())
         assert row["name"] in {field.name for field in dataclasses.fields(record)}
         low, high, unchanged = float(row["low"]), float(row["high"]), {"factor": 1, "offset": 0}[row["kind"]]
         assert low < high and low <= unchanged <= high
+        # a cut at the nominal value of any soil would move the middle of the interval
+        cut = [float(row[end] or fallback) for end, fallback in (("minimum", "-inf"), ("maximum", "inf"))]
+        records = map(rdk.soil, rdk.soil_names()) if row["record"] == "soil" else [rdk.Model()]
+        assert all(cut[0] <= getattr(record, row["name"]) < cut[1] for record in records)
+        assert row["note"], "says where the bounds come from, or that they are judgement"
 
 
 def test_model_defaults_are_the_constants_of_the_table():

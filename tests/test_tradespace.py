@@ -472,7 +472,8 @@ def test_a_dask_cluster_gives_the_same_bits(serial, tmp_path):
 
 def test_defaults_are_each_scenarios_seed_and_obstacles_reach_the_search():
     without_seed = replace(MARE, study=replace(MARE.study, seed=None))
-    found = rdk.study([SCENARIOS[0], without_seed], population=8, generations=2, obstacle_heights_m=[0.0, 0.12])
+    few = dict(population=8, generations=2)
+    found = rdk.study([SCENARIOS[0], without_seed], **few, obstacle_heights_m=[0.0, 0.12])
     assert [(c.seed, c.obstacle_height_m) for c in found] == [(12, 0.0), (12, 0.12), (0, 0.0), (0, 0.12)]
     for case, front in found.items():
         assert len(front) and np.all(front.performance.obstacle_capability_m >= case.obstacle_height_m)
