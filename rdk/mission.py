@@ -320,7 +320,7 @@ def _march(lane, times, steps, with_log):
     throttled[1:] &= stored[:-1] <= floor
     throttled[0] &= initial <= floor
     # energies by the trapezoidal rule over the samples, nothing recorded at the start: the last one counts half
-    samples = np.append(steps[:-1], steps[-1] / 2)
+    samples = (steps + np.append(steps[1:], 0.0)) / 2
     driven_h, mobility_h = duty * steps.sum(), duty * samples.sum()
     if throttled.any():
         lost = np.where(throttled, duty - _solar_duty(solar, base_load, mobility, duty), 0.0)
