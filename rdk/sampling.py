@@ -248,20 +248,29 @@ def uncertain_inputs(scenario, draws=500, seed=0, model=Model(), table=None):
     random = np.random.default_rng(seed)
     changes = {}
     for row in catalog.rows("uncertainties.csv") if table is None else table:
-        name, low, high = row["name"], float(row["low"]), float(row["high"])
+        name = row["name"]
         if row["kind"] not in ("factor", "offset") or row["distribution"] not in ("normal", "uniform"):
             raise ValueError(f"table: {name} must be a factor or offset, normal or uniform; got {row['kind']!r}, "
                              f"{row['distribution']!r}")
         if name not in scenario.soil.numbers() and name not in model.numbers():
             raise ValueError(f"table: no field {name!r} in Soil or Model")
-        if row["distribution"] == "normal":
-            drawn = (low + high) / 2 + (high - low) / 2 / _NORMAL_95 * random.standard_normal(draws)
-        else:
-            drawn = random.uniform(low, high, draws)
-        nominal = {**model.numbers(), **scenario.soil.numbers()}[name]
-        value = nominal * drawn if row["kind"] == "factor" else nominal + drawn
-        changes[name] = np.clip(value, float(row["minimum"] or -math.inf), float(row["maximum"] or math.inf))
+        changes[row["name"]] = perturbed(row, scenario, model, drawn(row, draws, random))
     return changes
+
+
+def drawn(row, draws, random):
+    """Raw draws of one row of the table: factors, or offsets in the unit of the field."""
+    low, high = float(row["low"]), float(row["high"])
+    if row["distribution"] == "uniform":
+        return random.uniform(low, high, draws)
+    return (low + high) / 2 + (high - low) / 2 / _NORMAL_95 * random.standard_normal(draws)
+
+
+def perturbed(row, scenario, model, drawn):
+    """Values of the uncertain field that a row of the table names, from raw draws: applied to the nominal, then cut."""
+    nominal = {**model.numbers(), **scenario.soil.numbers()}[row["name"]]
+    value = nominal * drawn if row["kind"] == "factor" else nominal + drawn
+    return np.clip(value, float(row["minimum"] or -math.inf), float(row["maximum"] or math.inf))
 
 
 def intervals(design, scenario, draws=500, seed=0, level=0.9, model=Model(), table=None):
