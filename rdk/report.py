@@ -30,6 +30,7 @@ td:first-child, th:first-child { text-align: left } th { border-bottom: 0.3mm so
 tr.missed td { font-weight: bold } .verdict { border-left: 1.2mm solid #0072B2; padding-left: 2mm }
 .verdict.missed { border-color: #D55E00 } .columns { display: grid; grid-template-columns: 1fr 1fr; gap: 1mm 5mm }
 .columns img { width: 100%; height: auto } .wide { grid-template-columns: 42fr 58fr } .small { font-size: 7.5pt }
+@media screen { body { padding: 6mm } }
 @media print { .screen { display: none } }
 """
 _UNITS = re.compile("(_(kg|kn|m|m2|n1|n2|nm|w|wh|mm|deg|kpa))+$")
@@ -261,7 +262,7 @@ def _demand_table(demands):
     rows = []
     for d in demands:
         if d.metric == "feasible":
-            cells = ("yes" if d.met else "no", "")
+            cells = ("yes" if d.met else "no", "–")
         else:
             cells = (f"{d.nominal:.3g}", f"{d.low:.3g} to {d.high:.3g}")
         rows.append((not d.met, d.words, *cells, f"{100 * d.share:.0f} %"))

@@ -1,0 +1,199 @@
+"""The one-page report: what it says against the functions that say it, its HTML, its picture, its page."""
+
+import base64
+import json
+import re
+import shutil
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+import rdk
+from rdk import exercises, keep
+from rdk.design import Study
+from rdk.report import Requirement, report, requirements, write
+
+MARE = rdk.scenario("equatorial_mare_traverse")
+RASHID = rdk.rover("Rashid-1")
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+class Page(HTMLParser):
+    """Elements, text and table rows of a page; every element that needs closing is closed in order."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.images, self.links, self.rows, self.words = [], [], [], [], []
+        self.feed(text)
+        assert not self.open, f"left open: {self.open}"
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        if tag == "img":
+            self.images.append(attributes)
+        elif tag == "a":
+            self.links.append(attributes)
+        elif tag == "tr":
+            self.rows.append((attributes.get("class", ""), []))
+        if tag not in ("img", "meta"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if self.open[-1:] == ["td"]:
+            self.rows[-1][1].append(data)
+        if "style" not in self.open:
+            self.words.append(data)
+
+
+@pytest.fixture(scope="module")
+def text():
+    return report(RASHID, MARE, "Rashid-1 <on> a mare & back", "First, 5 < 6.\n\nSecond.", draws=100)
+
+
+@pytest.fixture(scope="module")
+def page(text):
+    return Page(text)
+
+
+def test_the_page_is_sound_and_needs_nothing_else(text, page):
+    assert text.startswith("<!DOCTYPE html>\n<html lang=\"en\">") and 'charset="utf-8"' in text
+    assert not re.search(r"https?:|<script|<link|url\(", text)
+    words = " ".join(page.words)
+    assert "Rashid-1 <on> a mare & back" in words and "First, 5 < 6." in words and "<h1>Rashid-1 &lt;on&gt;" in text
+    assert text.count("<p>First, 5 &lt; 6.</p>") == text.count("<p>Second.</p>") == 1
+
+
+def test_four_embedded_pictures_with_words_for_those_who_do_not_see_them(page):
+    assert len(page.images) == 4
+    for image in page.images:
+        kind, data = image["src"].split(",")
+        assert kind == "data:image/png;base64" and base64.b64decode(data).startswith(b"\x89PNG")
+        assert len(image["alt"]) > 60
+    assert len({image["alt"] for image in page.images}) == 4
+
+
+def test_the_design_is_listed_and_travels_with_the_page(page):
+    listed = {cells[0]: cells[1] for _, cells in page.rows if len(cells) == 3}  # the demands have four
+    assert listed["wheel radius"] == "0.1 m" and listed["grouser count"] == "14" and len(listed) == 11
+    link = next(link for link in page.links if link["download"] == "design.json")
+    design, mission = keep.from_json(base64.b64decode(link["href"].split(",")[1]).decode())
+    assert design == RASHID and replace(mission, study=MARE.study) == MARE
+    json.loads(base64.b64decode(link["href"].split(",")[1]))
+
+
+def test_limits_of_the_project_are_shown_and_a_variable_outside_is_marked():
+    page = Page(report(RASHID, MARE, "x", bounds={"wheel_radius_m": (0.05, 0.09)}, draws=20))
+    (mark, cells), = [(mark, cells) for mark, cells in page.rows if cells[:1] == ["wheel radius"]]
+    assert mark == "missed" and cells[2] == "0.05 to 0.09, outside"
+    assert [mark for mark, cells in page.rows if cells[:1] == ["wheel width"]] == [""]
+
+
+def test_demands_are_those_of_the_scenario_with_the_drive_itself_first():
+    asked = replace(MARE, required_obstacle_height_m=0.04, study=Study(
+        constraints=(("range_km", ">=", 50), ("total_mass_kg", "<=", 16))))
+    found = requirements(RASHID, asked, draws=200, seed=3)
+    assert [(d.metric, d.sign, d.limit) for d in found] == [
+        ("feasible", ">=", 1.0), ("range_km", ">=", 50), ("total_mass_kg", "<=", 16),
+        ("obstacle_capability_m", ">=", 0.04)]
+    assert [d.words for d in found] == ["drives the mission", "range ≥ 50 km", "total mass ≤ 16 kg",
+                                        "obstacle capability ≥ 0.04 m"]
+    nominal, spans = rdk.evaluate(RASHID, asked), rdk.intervals(RASHID, asked, draws=200, seed=3)
+    mass = found[2]
+    assert mass.nominal == nominal.total_mass_kg > 16 and not mass.met
+    assert (mass.low, mass.high) == (spans.low["total_mass_kg"], spans.high["total_mass_kg"])
+    assert mass.share == np.mean(spans.draws.total_mass_kg <= 16)
+    assert found[0].share == spans.draws.feasible.mean() and found[3].met and found[3].share == 1
+
+
+def test_the_driver_of_a_demand_is_the_input_that_moves_it_most():
+    asked = replace(MARE, study=Study(constraints=(("total_mass_kg", "<=", 16), ("obstacle_capability_m", ">=", 0.01))))
+    mass, obstacle = requirements(RASHID, asked, draws=300)[1:]
+    assert obstacle.driver == ""                         # the wheel's radius is not uncertain
+    alone = {row["name"]: rdk.intervals(RASHID, asked, draws=300, table=[row]).draws.total_mass_kg.std()
+             for row in rdk.catalog.rows("uncertainties.csv")}
+    assert mass.driver == max(alone, key=alone.get)
+
+
+def test_verdict_and_risks_say_what_the_table_says():
+    asked = replace(MARE, study=Study(constraints=(("total_mass_kg", "<=", 16), ("range_km", ">=", 1))))
+    text = report(RASHID, asked, "x", draws=100)
+    share = requirements(RASHID, asked, draws=100)[1].share
+    assert "<b>Misses 1 of 3 demands: total mass ≤ 16 kg.</b>" in text and 'class="verdict missed"' in text
+    assert f"“total mass ≤ 16 kg” fails in {100 * (1 - share):.0f} % of the draws" in text
+    assert rdk.explain.binding(RASHID, asked, rdk.evaluate(RASHID, asked)).sentence in text
+    assert [mark for mark, cells in Page(text).rows if cells[:1] == ["total mass ≤ 16 kg"]] == ["missed"]
+    easy = report(RASHID, replace(MARE, slope_deg=0.0, study=Study(constraints=(("total_mass_kg", "<=", 99),))), "x",
+                  draws=100)
+    assert "<b>Meets all 2 demands of the mission.</b>" in easy
+    assert "Every demand holds in all draws of the uncertain inputs." in easy
+
+
+def test_front_baseline_and_changed_coefficients_show():
+    front = rdk.pareto_front(exercises.SWIRL, population=8, generations=40, seed=1, constraints=[])
+    text = report(RASHID, MARE, "x", front=front, baseline=rdk.rover("Tenacious"), baseline_name="Tenacious",
+                  why="slope_capability_deg", model=rdk.Model(drivetrain_efficiency=0.7), draws=20)
+    alts = [image["alt"] for image in Page(text).images]
+    assert alts[0].startswith(f"Front of {len(front)} designs") and "(Tenacious)" in alts[3]
+    assert "slope capability (deg)" in alts[3] and "Model: drivetrain_efficiency = 0.7." in text
+    assert "Model: the paper's coefficients." in report(RASHID, MARE, "x", draws=20)
+
+
+def test_a_rover_that_stalls_or_sinks_still_has_a_page():
+    stalled = report(RASHID, replace(MARE, slope_deg=34.0), "x", draws=20)
+    assert "Misses" in stalled and "Traction binds" in stalled
+    with pytest.warns(UserWarning, match="design outside the class"):
+        sunk = report(replace(RASHID, chassis_mass_kg=900.0), replace(MARE, soil=rdk.soil("apollo-loose")), "x", draws=20)
+    assert "the rover is buried" in sunk and "NaN" not in " ".join(Page(sunk).words)
+
+
+@pytest.mark.parametrize("change, words", [
+    ({"title": " "}, "title must be a text"), ({"title": None}, "title must be a text"),
+    ({"why": "speed"}, "why: no metric 'speed'; choose from"),
+    ({"design": rdk.random_designs(3, seed=1)}, "design must be a single one"),
+    ({"scenario": replace(MARE, slope_deg=[1.0, 2.0])}, "scenario must be a single one"),
+    ({"model": rdk.Model(shear_scale=[0.9, 1.0])}, "model must be a single one")])
+def test_bad_arguments_are_named(change, words):
+    with pytest.raises(ValueError, match=words):
+        report(**{"design": RASHID, "scenario": MARE, "title": "x", "draws": 20, **change})
+
+
+def test_same_inputs_same_page():
+    assert report(RASHID, MARE, "x", draws=20) == report(RASHID, MARE, "x", draws=20)
+
+
+def test_requirement_words_keep_units():
+    d = Requirement("minimum_soc", ">=", 0.2, 0.3, 0.2, 0.4, True, 1.0, "")
+    assert d.words == "lowest state of charge ≥ 0.2" and d._replace(metric="sinkage_m", sign="<=").words == "sinkage ≤ 0.2 m"
+
+
+def test_writing_replaces_the_file_in_one_step(tmp_path, monkeypatch):
+    path = write("old é", tmp_path / "page.html")
+    assert path.read_text(encoding="utf-8") == "old é"
+    assert write("new", str(path)) == path and path.read_text() == "new"
+    with pytest.raises(UnicodeEncodeError):
+        write("bad \ud800", path)                        # fails half-way: the old page stays, nothing else does
+    assert path.read_text() == "new" and list(tmp_path.iterdir()) == [path]
+    with pytest.raises(FileNotFoundError):
+        write("x", tmp_path / "no folder" / "page.html")
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium")
+def test_it_prints_on_one_page_of_a4_with_a_full_page_of_notes(tmp_path):
+    from playwright.sync_api import sync_playwright
+    notes = "\n\n".join(["A choice, and what was given up for it: " + "some sixty words of text, " * 10] * 4)
+    text = report(RASHID, replace(exercises.SWIRL), "Rashid-1 at Reiner Gamma", notes, draws=50,
+                  bounds=exercises.SWIRL_LIMITS)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+        tab = browser.new_page(viewport={"width": 1000, "height": 1300})
+        tab.goto(write(text, tmp_path / "page.html").as_uri())
+        assert tab.evaluate("[...document.images].every(image => image.complete && image.naturalWidth > 0)")
+        assert tab.evaluate("document.documentElement.scrollWidth") <= 1000
+        pdf = tab.pdf(format="A4", prefer_css_page_size=True)
+        browser.close()
+    assert len(re.findall(rb"/Type\s*/Page\b", pdf)) == 1
