@@ -77,7 +77,7 @@ def check(name, value, minimum=-math.inf, maximum=math.inf, *, above=None, below
     good &= (array >= minimum if above is None else array > above)
     good &= (array <= maximum if below is None else array < below)
     if whole:
-        good &= array == np.floor(array)
+        good &= (array == np.floor(array)) & (np.abs(array) < 2**53)         # beyond, floats skip whole numbers
     if choices:
         good &= np.isin(array, choices)
     if not good.all():
