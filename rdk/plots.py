@@ -1252,5 +1252,5 @@ def demand_chances(mass_kg, shares, wanted=0.9):
                 label=label)
     ax.axhline(100 * wanted, color=GREY, linewidth=1)
     ax.set(xlabel="nominal mass (kg)", ylabel="holds in (% of the draws)", ylim=(-3, 103))
-    figure.legend(loc="outside upper center", ncols=2, fontsize=9)
+    figure.legend(loc="outside upper center", ncols=2, fontsize=9, frameon=False)
     return figure
