@@ -924,7 +924,8 @@ def mass_shares(shares):
     left = np.zeros(len(shares))
     for k, group in enumerate(shares.columns):
         width = shares[group].to_numpy()
-        ax.barh(shares.index, width, left=left, height=0.7, color=fills[k], edgecolor=edges[k], hatch=HATCHES[k],
+        ax.barh(shares.index, width, left=left, height=0.7, color=fills[k], edgecolor=edges[k],
+                hatch=HATCHES[k],
                 label=group, lw=1)
         for y, (x, w) in enumerate(zip(left, width)):
             if w >= 5:
@@ -962,11 +963,14 @@ def mass_errors(masses, median_pct):
         colour = BLUE if four else ORANGE
         ax.plot(row.published_mass_kg, row.error_pct, MARKERS[0 if four else 1], color=colour, markersize=8,
                 markerfacecolor=colour if row.in_class else "white")
-        ax.annotate(row.rover, (row.published_mass_kg, row.error_pct), (7, 5), textcoords="offset points", fontsize=9)
+        ax.annotate(row.rover, (row.published_mass_kg, row.error_pct), (7, 5), textcoords="offset points",
+                    fontsize=9)
     for four in (True, False):
-        ax.plot([], [], MARKERS[0 if four else 1], color=BLUE if four else ORANGE, label=f"{4 if four else 6} wheels")
+        ax.plot([], [], MARKERS[0 if four else 1], color=BLUE if four else ORANGE,
+                label=f"{4 if four else 6} wheels")
     ax.plot([], [], "o", color=BLACK, markerfacecolor="white", label="outside the class")
-    ax.set(xscale="log", xlim=(4, 220), xlabel="published mass (kg)", ylabel="error of the predicted mass (%)")
+    ax.set(xscale="log", xlim=(4, 220), xlabel="published mass (kg)",
+           ylabel="error of the predicted mass (%)")
     ax.set_xticks([5, 10, 20, 50, 100, 200], ["5", "10", "20", "50", "100", "200"])
     ax.minorticks_off()
     ax.legend(fontsize=9)
@@ -998,9 +1002,11 @@ def fixed_overheads(masses, mass_kg, shares):
         below = four and k % 2                           # neighbours' names must not meet
         ax.plot(row.published_mass_kg, row.fixed_overhead_pct, MARKERS[0 if four else 1],
                 color=BLUE if four else ORANGE, markersize=7)
-        ax.annotate(row.rover, (row.published_mass_kg, row.fixed_overhead_pct), (-6, -11) if below else (6, 4),
+        ax.annotate(row.rover, (row.published_mass_kg, row.fixed_overhead_pct),
+                    (-6, -11) if below else (6, 4),
                     textcoords="offset points", fontsize=9, ha="right" if below else "left")
-    ax.set(xscale="log", xlabel="published mass (kg)", ylabel="fixed overhead (% of published mass)", ylim=(0, None))
+    ax.set(xscale="log", xlabel="published mass (kg)", ylabel="fixed overhead (% of published mass)",
+           ylim=(0, None))
     ax.set_xticks([5, 10, 20, 50, 100, 200], ["5", "10", "20", "50", "100", "200"])
     ax.minorticks_off()
     ax.legend(fontsize=9)
@@ -1080,7 +1086,8 @@ def panel_incidence(hour_angle_deg, incidence, no_horizon):
         ax.plot(hour_angle_deg, values, color=COLOURS[k], linestyle=DASHES[k % 3], label=label)
     for edge in (-90, 90):
         ax.axvline(edge, color=GREY, lw=0.8)
-    ax.set(xlabel="hour angle (deg)", ylabel="incidence factor cos i", xticks=range(-180, 181, 45), ylim=(0, 1.05))
+    ax.set(xlabel="hour angle (deg)", ylabel="incidence factor cos i", xticks=range(-180, 181, 45),
+           ylim=(0, 1.05))
     ax.legend(fontsize=9)
     return figure
 
@@ -1122,8 +1129,8 @@ def power_flows(log):
     Returns
     -------
     matplotlib.figure.Figure
-        Above, what the array gives: used at once, into the battery, thrown away; below, what the load takes: from the
-        array, from the battery, not served.
+        Above, what the array gives: used at once, into the battery, thrown away; below, what the load
+        takes: from the array, from the battery, not served.
     """
     days, net = log.time_h / 24, log.solar_w - log.load_w
     direct = np.minimum(log.solar_w, log.load_w)
@@ -1133,7 +1140,8 @@ def power_flows(log):
              "not served": log.unserved_w}
     figure, axes = _axes(2, 1, figsize=(7.0, 5.2), sharex=True)
     for ax, flows, title in zip(axes, (given, taken), ("array (W)", "load (W)")):
-        parts = ax.stackplot(days, *flows.values(), labels=flows.keys(), colors=("#9ccbe6", "white", "#dddddd"),
+        parts = ax.stackplot(days, *flows.values(), labels=flows.keys(),
+                             colors=("#9ccbe6", "white", "#dddddd"),
                              step="pre", edgecolor=BLACK, linewidth=0.4)
         parts[1].set_hatch("//")
         parts[2].set_hatch("..")
@@ -1191,8 +1199,10 @@ def peak_solar(flown):
                         label="published band")
         ax.hlines(row.published_peak_w, -0.5, 0.5, color=BLACK, linestyle="--", label="published")
         spread = [[row.clean_peak_w - row.clean_peak_low_w], [row.clean_peak_high_w - row.clean_peak_w]]
-        ax.errorbar([0], [row.clean_peak_w], spread, fmt="o", color=BLUE, capsize=5, label="clean, cell 0.28 to 0.32")
-        ax.set(title=row.rover, xticks=[], xlim=(-0.6, 0.6), ylim=(0, 1.1 * max(row.clean_peak_high_w, row.published_high_w)),
+        ax.errorbar([0], [row.clean_peak_w], spread, fmt="o", color=BLUE, capsize=5,
+                    label="clean, cell 0.28 to 0.32")
+        ax.set(title=row.rover, xticks=[], xlim=(-0.6, 0.6),
+               ylim=(0, 1.1 * max(row.clean_peak_high_w, row.published_high_w)),
                ylabel="peak solar power (W)")
         ax.grid(axis="x", visible=False)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=9)
@@ -1219,9 +1229,11 @@ def node_temperatures(heat_w, temperature_c, limits_c, marks):
     """
     figure, ax = _axes(figsize=(6.8, 4.0))
     ax.axhspan(*limits_c, color=GREY, alpha=0.2, lw=0)
-    _lines(ax, heat_w, temperature_c, "heat to radiate (W)", "temperature of the enclosure (degC)", legend=False)
+    _lines(ax, heat_w, temperature_c, "heat to radiate (W)", "temperature of the enclosure (degC)",
+           legend=False)
     for k, (label, (heat, temperature)) in enumerate(marks.items()):
-        ax.plot(heat, temperature, MARKERS[k % len(MARKERS)], color=BLACK, markersize=7, markerfacecolor="white",
+        ax.plot(heat, temperature, MARKERS[k % len(MARKERS)], color=BLACK, markersize=7,
+                markerfacecolor="white",
                 label=label)
     ax.set(xlim=(heat_w[0], heat_w[-1]))
     ax.legend(fontsize=8.5)

@@ -72,7 +72,8 @@ def test_mass_errors_are_points_with_their_names(masses):
         assert line.get_marker() == ("o" if row.wheel_count == 4 else "s")
         assert (line.get_markerfacecolor() != "white") == row.in_class
     band = axes.patches[0].get_extents().transformed(axes.transData.inverted())
-    np.testing.assert_allclose([band.y0, band.y1], [-10.5, 10.5], rtol=1e-9)      # there and back through pixels
+    # there and back through pixels
+    np.testing.assert_allclose([band.y0, band.y1], [-10.5, 10.5], rtol=1e-9)
 
 
 def test_fixed_overheads_draw_points_and_curves(masses):
@@ -143,7 +144,8 @@ def test_power_flows_stack_up_to_array_and_load(log):
 
 def test_efficiency_stack_is_a_running_product():
     axes = plots.efficiency_stack({"a": 0.5, "b": 0.4, "c": 0.5}, {"other": 0.25}).axes[0]
-    np.testing.assert_allclose([bar.get_height() for bar in axes.patches], [0.5, 0.2, 0.1], rtol=1e-12)   # rounding
+    # rounding
+    np.testing.assert_allclose([bar.get_height() for bar in axes.patches], [0.5, 0.2, 0.1], rtol=1e-12)
     assert [label.get_text() for label in axes.get_xticklabels()] == ["a", "b", "c"]
     assert curves(axes)["other: 0.250"][1][0] == 0.25
 
@@ -155,7 +157,8 @@ def test_peak_solar_shows_prediction_sweep_and_record(flown):
         point, caps, bars = axes.containers[0]
         assert point.get_ydata()[0] == row.clean_peak_w
         # ends computed as value minus and plus a difference
-        np.testing.assert_allclose(bars[0].get_segments()[0][:, 1], [row.clean_peak_low_w, row.clean_peak_high_w],
+        np.testing.assert_allclose(bars[0].get_segments()[0][:, 1],
+                                   [row.clean_peak_low_w, row.clean_peak_high_w],
                                    rtol=1e-12)
         low, high = axes.get_ylim()
         assert low == 0 and high > max(row.clean_peak_high_w, row.published_high_w)
@@ -164,7 +167,8 @@ def test_peak_solar_shows_prediction_sweep_and_record(flown):
 
 
 def test_node_temperatures_draw_curves_marks_and_limits():
-    axes = plots.node_temperatures(X, {"day": 5 * X, "night": 5 * X - 100}, (-30, 50), {"here": (2.0, 10.0)}).axes[0]
+    axes = plots.node_temperatures(X, {"day": 5 * X, "night": 5 * X - 100}, (-30, 50),
+                                   {"here": (2.0, 10.0)}).axes[0]
     drawn = curves(axes)
     np.testing.assert_array_equal(drawn["night"][1], 5 * X - 100)
     assert (drawn["here"][0][0], drawn["here"][1][0]) == (2.0, 10.0)

@@ -1,4 +1,4 @@
-"""Sun, panel and enclosure against other people's formulas: pvlib, rotation matrices, the Stefan-Boltzmann law."""
+"""Sun, panel and enclosure by other means: pvlib, rotation matrices, the Stefan-Boltzmann law."""
 
 import numpy as np
 from hypothesis import given
@@ -32,7 +32,7 @@ def turned(axis, angle):
 
 
 def test_sun_position_agrees_with_turning_a_ball():
-    """Stand at latitude 0 under the noon sun, walk to the latitude, let the ball turn: no spherical trigonometry."""
+    """Stand under the noon sun, walk to the latitude, let the ball turn: no spherical trigonometry."""
     for latitude, hour, declination in zip(*np.radians([LATITUDE[:300], HOUR[:300], DECLINATION[:300]])):
         walk = turned([0, 0, 1], hour) @ turned([0, 1, 0], -latitude)        # z is the Moon's axis
         up, east, north = walk @ [1, 0, 0], walk @ [0, 1, 0], walk @ [0, 0, 1]
@@ -48,11 +48,13 @@ def test_sun_position_agrees_with_turning_a_ball():
 def test_nothing_comes_through_the_ground_or_the_back():
     below = power.sun_position(LATITUDE, HOUR)[0] < -1e-6
     assert below.any() and not power.incidence_factor(LATITUDE, HOUR, TILT, AZIMUTH)[below].any()
-    noon = power.incidence_factor(40.0, 0.0, 90.0, [180.0, 0.0])             # sun in the south, panel's back to it
+    # sun in the south, panel's back to it
+    noon = power.incidence_factor(40.0, 0.0, 90.0, [180.0, 0.0])
     assert noon[0] > 0 and noon[1] == 0
 
 
-@given(heat_w=st.floats(0, 1000), area_m2=st.floats(0.01, 2), sink_k=st.floats(50, 400), emissivity=st.floats(0.05, 1))
+@given(heat_w=st.floats(0, 1000), area_m2=st.floats(0.01, 2), sink_k=st.floats(50, 400),
+       emissivity=st.floats(0.05, 1))
 def test_stefan_boltzmann_balance_closes(heat_w, area_m2, sink_k, emissivity):
     kelvin = thermal.node_temperature(heat_w, area_m2, sink_k, emissivity=emissivity) + 273.15
     conductance = emissivity * 5.670374419e-8 * area_m2
@@ -67,5 +69,6 @@ def test_temperature_takes_arrays_and_scalars_alike():
     heat, sink = np.array([0.0, 2.0, 30.0]), np.array([[100.0], [250.0]])
     table = thermal.node_temperature(heat, 0.1, sink)
     one = [[float(thermal.node_temperature(q, 0.1, s)) for q in heat] for s in sink.ravel()]
-    assert_allclose(table, one, rtol=1e-13)              # vector and scalar square roots may differ in the last bit
+    # vector and scalar square roots may differ in the last bit
+    assert_allclose(table, one, rtol=1e-13)
     assert (np.diff(table, axis=1) > 0).all() and (np.diff(table, axis=0) > 0).all()
