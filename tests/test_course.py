@@ -1,0 +1,172 @@
+"""The exercises: answers pass their own check, typical mistakes get their own hint, notebooks and registry agree."""
+
+import re
+from pathlib import Path
+
+import nbformat
+import numpy as np
+import pytest
+
+import rdk
+from rdk import course, exercises
+
+REPO = Path(__file__).parents[1]
+PATHS = {path.name[:2]: path for path in sorted((REPO / "notebooks").glob("[0-9][0-9]_*.ipynb"))}
+TASKS = course.EXERCISES
+MISTAKES = [(number, hint) for number, task in sorted(TASKS.items()) for hint in task.mistakes]
+HEADING = re.compile(r"^### Exercise (\d\d\.\d)\b(.*)$", re.M)
+pytestmark = pytest.mark.filterwarnings("ignore:design outside the class")
+
+
+def given(value):
+    """An answer in another form that means the same."""
+    if isinstance(value, str):
+        return f" {value.upper()} "
+    if isinstance(value, set):
+        return [word.upper() for word in value]
+    if isinstance(value, (bool, np.bool_, rdk.Design)):
+        return value
+    return np.asarray(value).tolist()
+
+
+@pytest.mark.parametrize("number", sorted(TASKS))
+def test_the_answer_of_an_exercise_passes_its_own_check(number):
+    verdict = rdk.check(number, TASKS[number].answer())
+    assert verdict and repr(verdict).startswith("Right"), verdict
+    assert rdk.check(number, given(TASKS[number].answer()))
+
+
+@pytest.mark.parametrize("number, hint", MISTAKES)
+def test_a_typical_mistake_gets_the_hint_meant_for_it(number, hint):
+    verdict = rdk.check(number, TASKS[number].mistakes[hint]())
+    assert not verdict
+    if TASKS[number].judge is None:
+        assert verdict.message == "Not yet. " + hint
+    else:
+        assert hint in verdict.message
+
+
+@pytest.mark.parametrize("number", sorted(TASKS))
+def test_hints_give_no_answer_away(number):
+    task = TASKS[number]
+    assert task.judge or task.hint
+    words = "" if task.judge else f"{task.hint} {' '.join(task.mistakes)}"
+    if isinstance(task.expected, str):
+        assert not re.search(rf"\b{re.escape(task.expected.lower())}\b", words.lower())
+    elif task.judge is None and not isinstance(task.expected, (bool, set)):
+        numbers = [float(found) for found in re.findall(r"(?<![\w.])-?\d+\.?\d*(?![\w.])", words)]
+        close = [n for n in numbers for value in np.ravel(task.expected) if abs(n - value) <= 0.005 * abs(value)]
+        assert not close, (close, words)
+
+
+@pytest.mark.parametrize("number", sorted(n for n, task in TASKS.items() if task.judge is None))
+def test_any_other_answer_gets_the_general_hint(number):
+    task = TASKS[number]
+    if isinstance(task.expected, (bool, np.bool_)):
+        other = not task.expected
+    elif isinstance(task.expected, (str, set)):
+        known = [wrong() for wrong in task.mistakes.values()] + [task.expected]
+        words = [word for word in task.choices if word not in known]
+        if isinstance(task.expected, str) and not words:
+            pytest.skip("every wrong word has a hint of its own")
+        other = words[0] if isinstance(task.expected, str) else set()
+    else:
+        other = np.asarray(task.expected, float) * 0 + 7.77e5
+    verdict = rdk.check(number, other)
+    assert not verdict and verdict.message in ["Not yet. " + hint for hint in (task.hint, *task.mistakes)]
+
+
+def test_numbers_agree_within_their_tolerance_only():
+    right = TASKS["12.1"].expected
+    assert rdk.check("12.1", right * 1.004) and not rdk.check("12.1", right * 1.006)
+    assert rdk.check("12.1", np.float64(right)) and rdk.check("12.1", [right])
+
+
+def test_three_dots_are_no_answer_yet():
+    for number in TASKS:
+        assert not rdk.check(number, ...) and "No answer yet" in rdk.check(number, ...).message
+
+
+def test_unknown_exercises_are_refused_and_the_known_ones_named():
+    with pytest.raises(ValueError, match=r"no exercise '12\.9'; choose from 12\.1, 12\.2"):
+        rdk.check("12.9", 1.0)
+    with pytest.raises(ValueError, match=r"no exercise 'Rashid'; choose from 00\.1|12\.1"):
+        rdk.check("Rashid", 1.0)
+    with pytest.raises(ValueError, match="registered twice"):
+        course.exercise("12.1", lambda: 1.0, "")
+
+
+@pytest.mark.parametrize("answer", ["0.12", None, True, [1.0, 2.0], [[1.0], [1.0, 2.0]], np.nan, np.inf, 1j, {}])
+def test_answers_of_the_wrong_kind_to_a_number(answer):
+    with pytest.raises(ValueError, match="exercise 12.1 asks for one number"):
+        rdk.check("12.1", answer)
+
+
+@pytest.mark.parametrize("answer", [1.0, "a rover", None, {"wheel_radius_m": 0.1}, rdk.random_designs(3, seed=1)])
+def test_answers_of_the_wrong_kind_to_a_design_task(answer):
+    with pytest.raises(ValueError, match="exercise 12.4 asks for one Design; got"):
+        rdk.check("12.4", answer)
+
+
+def test_answers_of_the_wrong_kind_to_the_other_kinds(monkeypatch):
+    monkeypatch.setattr(course, "EXERCISES", dict(TASKS))
+    course.exercise("99.1", lambda: "sun", "look up", {"too wet": lambda: "rain"}, choices=("sun", "rain", "snow"))
+    course.exercise("99.2", lambda: {"sun", "rain"}, "look up", choices=("sun", "rain", "snow"))
+    course.exercise("99.3", lambda: True, "look up")
+    course.exercise("99.4", lambda: [1.0, 0.0], "look up", {"swapped": lambda: [0.0, 1.0]})
+    for number, wrong, words in (
+            ("99.1", "hail", "one of the words sun, rain, snow"), ("99.1", 1, "one of the words"),
+            ("99.2", "sun", "a set of words from sun, rain, snow"), ("99.2", {1}, "a set of words"),
+            ("99.3", 1, "True or False"), ("99.3", "True", "True or False"), ("99.4", 1.0, "2 numbers"),
+            ("99.4", [True, False], "2 numbers")):
+        with pytest.raises(ValueError, match=f"exercise {number} asks for {words}.*; got"):
+            rdk.check(number, wrong)
+    assert rdk.check("99.1", " Sun ") and rdk.check("99.2", ["RAIN", "sun"]) and rdk.check("99.3", np.True_)
+    assert rdk.check("99.1", "rain").message == "Not yet. too wet" and not rdk.check("99.2", {"sun"})
+    assert rdk.check("99.4", [1.0, 0.0]) and rdk.check("99.4", np.array([1, 0]))
+    assert rdk.check("99.4", [0, 1]).message == "Not yet. swapped" and not rdk.check("99.4", [1.0, 0.1])
+
+
+# ---- the notebooks --------------------------------------------------------------------------------------------
+
+def exercises_of(path):
+    """The cells that follow each exercise heading, up to the next heading: {number: (heading, cells)}."""
+    found, number = {}, None
+    for cell in nbformat.read(path, as_version=4).cells:
+        heading = HEADING.search(cell.source) if cell.cell_type == "markdown" else None
+        if heading:
+            number = heading[1]
+            assert number not in found, f"two exercises {number}"
+            assert len(HEADING.findall(cell.source)) == 1, f"one exercise a cell: {number}"
+            found[number] = (heading[2], [cell])
+        elif cell.cell_type == "markdown" and re.search(r"^##? ", cell.source, re.M):
+            number = None
+        elif number:
+            found[number][1].append(cell)
+    return found
+
+
+@pytest.mark.parametrize("chapter", sorted({number[:2] for number in TASKS}))
+def test_notebook_and_registry_hold_the_same_exercises(chapter):
+    found = exercises_of(PATHS[chapter])
+    assert list(found) == sorted(n for n in TASKS if n[:2] == chapter)
+    assert 3 <= len(found) <= 6
+    headings = [heading for heading, _ in found.values()]
+    assert "(one minute)" in headings[0] and all(re.fullmatch(r" \(.+\)", heading) for heading in headings)
+
+
+def test_no_notebook_has_exercises_that_the_registry_lacks():
+    for chapter, path in PATHS.items():
+        assert not set(exercises_of(path)) - set(TASKS), path.name
+
+
+@pytest.mark.parametrize("number", sorted(TASKS))
+def test_each_exercise_has_a_hint_a_place_for_the_answer_and_a_checked_solution(number):
+    _, (text, *cells) = exercises_of(PATHS[number[:2]])[number]
+    assert re.search(r"<details><summary>Hint</summary>.+</details>", text.source, re.S), "a collapsed hint"
+    open_cells = [cell for cell in cells if cell.cell_type == "code" and "solution" not in cell.metadata.get("tags", [])]
+    solutions = [cell for cell in cells if "solution" in cell.metadata.get("tags", [])]
+    assert [cell.source for cell in open_cells] == [f'answer = ...\nrdk.check("{number}", answer)']
+    assert "No answer yet" in open_cells[0].outputs[0]["data"]["text/plain"]
+    assert any(f'assert rdk.check("{number}", ' in cell.source for cell in solutions), "the solution passes its check"
+    assert exercises.__doc__ and all(cell.metadata["jupyter"]["source_hidden"] for cell in solutions)
