@@ -2,14 +2,19 @@
 
 import re
 import statistics
+import unicodedata
 from pathlib import Path
 
 import nbformat
 import pytest
 
+import rdk
+
 REPO = Path(__file__).parents[1]
 PATHS = sorted((REPO / "notebooks").glob("[0-9][0-9]_*.ipynb"))
-SECTIONS = ["You will be able to", "You need first", "minutes", "What you learned", "References"]
+SECTIONS = ["You will be able to", "You need first", "minutes"]
+ENDING = ["## Exercises", "## What you learned", "## References"]
+MOST_MINUTES = 25  # of reading
 
 
 def tags(cell):
@@ -18,6 +23,26 @@ def tags(cell):
 
 def lines(cell):
     return [line for line in cell.source.splitlines() if line.strip()]
+
+
+def reading_minutes(notebook):
+    """A reader's time: 200 words and 60 lines of code a minute, 15 s an equation, 20 s a picture; solutions left out."""
+    text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+    equations = re.findall(r"\$\$.+?\$\$", text, re.S)
+    words = len(re.sub(r"\$\$.+?\$\$|<[^>]+>|\]\([^)]*\)", " ", text, flags=re.S).split())
+    code = sum(len(lines(cell)) for cell in notebook.cells if cell.cell_type == "code" and "solution" not in tags(cell))
+    pictures = sum("image/png" in out.get("data", {}) for cell in notebook.cells for out in cell.get("outputs", []))
+    return words / 200 + code / 60 + len(equations) / 4 + pictures / 3
+
+
+def bibliography():
+    """(family name of the first author or the name of the organisation, year, DOI) of every entry."""
+    for entry in re.split(r"\n(?=@)", (REPO / "data/references.bib").read_text(encoding="utf-8")):
+        fields = dict(re.findall(r"^\s*(\w+)\s*=\s*\{(.*)\},?\s*$", entry, re.M))
+        if fields:
+            who = (fields.get("author") or fields.get("editor")).split(" and ")[0]
+            name = re.sub(r"\\[\"'`^~]\{?(\w)\}?", r"\1", who).replace("{", "").replace("}", "").split(",")[0]
+            yield name.strip(), fields["year"], fields.get("doi", "").lower()
 
 
 def stated_minutes(path):
@@ -102,6 +127,41 @@ def test_anatomy(path, notebook, prose):
     assert notebook.cells[0].cell_type == "markdown"
     assert re.match(rf"# {path.name[:2]}\b", notebook.cells[0].source), "the title starts with the number"
     assert not [section for section in SECTIONS if section.lower() not in prose.lower()]
+    assert [head for head in re.findall(r"^## .+$", prose, re.M) if head in ENDING] == ENDING
+    steps = re.findall(r"^## (\d+)\b", prose, re.M)
+    assert steps == [str(i + 1) for i in range(len(steps))] and len(steps) >= 3, "numbered steps"
+
+
+def test_length(path, notebook):
+    minutes, stated = reading_minutes(notebook), int(stated_minutes(path))
+    assert minutes <= MOST_MINUTES >= stated
+    assert 0.75 <= stated / minutes <= 1.5, f"states {stated} minutes of reading, a reader takes about {minutes:.0f}"
+
+
+def test_no_dead_reference(path, prose):
+    steps = set(re.findall(r"^## (\d+)\b", prose, re.M))
+    mentioned = re.findall(r"\b[Ss]ections? (\d+)(?:(?:,| and| to) (\d+))?\b(?! of)", prose)  # of this notebook
+    assert {number for pair in mentioned for number in pair if number} <= steps
+    numbers = {other.name[:2] for other in PATHS}
+    assert set(re.findall(r"[Nn]otebooks? (\d\d)\b", prose)) <= numbers
+    for name in set(re.findall(r"`rdk((?:\.\w+)+)", prose)):
+        thing = rdk
+        for part in name.split(".")[1:]:
+            assert hasattr(thing, part), f"`rdk{name}`"
+            thing = getattr(thing, part)
+    assert not [name for name in re.findall(r"`(data/[\w./]+)`", prose) if not (REPO / name).exists()]
+    heads = {re.sub(r"[^\w\- ]", "", head).strip().replace(" ", "-") for head in re.findall(r"^#+ (.+)$", prose, re.M)}
+    assert set(re.findall(r"\]\(#([^)]+)\)", prose)) <= heads
+
+
+def test_references_are_in_the_bibliography_and_carry_their_doi(prose):
+    listed = re.findall(r"^[-*] (.+(?:\n  .+)*)", prose.partition("## References")[2], re.M)
+    assert listed
+    for reference in listed:
+        plain = "".join(c for c in unicodedata.normalize("NFD", reference) if not unicodedata.combining(c))
+        dois = [doi for name, year, doi in bibliography() if name in plain and year in plain]
+        assert dois, f"not in data/references.bib by first author and year: {reference}"
+        assert not all(dois) or any(doi in plain.lower() for doi in dois), f"its DOI is known, but missing: {reference}"
 
 
 def test_links_resolve(path, prose):
