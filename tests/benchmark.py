@@ -1,0 +1,146 @@
+"""Speed, memory and import time of the evaluator on one core: `python tests/benchmark.py` prints the tables.
+
+The yardstick is the scalar transcription of the paper beside this file: it does the work of the original release
+(100 points on the contact arc, Brent's method, an hourly loop) and costs about as much. Ratios are taken within one
+run, so that they compare the engines and not two machines; times are processor times, so that other programs on
+the machine disturb them less. Nothing here is a test.
+"""
+import os
+
+for variable in "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS":
+    os.environ[variable] = "1"                           # before numpy is imported
+
+import dataclasses
+import platform
+import statistics
+import subprocess
+import sys
+import time
+import tracemalloc
+
+import numpy as np
+import scalar_transcription as scalar
+
+import rdk
+from rdk import contact
+
+SIZES = {1: 40, 50: 30, 2_000: 6, 100_000: 1}            # designs in a population: repetitions
+SCENARIOS = rdk.scenario_names("canonical")
+
+
+def milliseconds(function, *arguments):
+    """Processor time of one call."""
+    start = time.process_time()
+    function(*arguments)
+    return 1e3 * (time.process_time() - start)
+
+
+def transcribed(scenario):
+    return {**vars(scenario), "soil": vars(scenario.soil)}
+
+
+def speed():
+    """Median milliseconds a design by population and scenario, and the ratio to the scalar transcription."""
+    print(f"{'designs':>10} {'scenario':28}{'ms/design':>12}{'scalar ms':>12}{'ratio':>9}")
+    for size, repetitions in SIZES.items():
+        ratios = []
+        for name in SCENARIOS:
+            scenario = rdk.scenario(name)
+            mission, times = transcribed(scenario), []
+            rdk.evaluate(rdk.random_designs(1, seed=0), scenario)           # warm up
+            for i in range(repetitions):                 # turn about, so that both see the same machine
+                population = rdk.random_designs(size, seed=i)
+                scalar_ms = [milliseconds(scalar.evaluate, rdk.random_designs(1, seed=1000 * i + k)[0].numbers(), mission)
+                             for k in range(max(1, 12 // repetitions))]
+                if size == 1:
+                    population = population[0]
+                times.append((milliseconds(rdk.evaluate, population, scenario) / size, statistics.median(scalar_ms)))
+            ours, theirs = (statistics.median(column) for column in zip(*times))
+            ratios.append(theirs / ours)
+            print(f"{size:>10,} {name:28}{ours:>12.4f}{theirs:>12.2f}{ratios[-1]:>9.0f}")
+        print(f"{size:>10,} {'median ratio':28}{'':>24}{statistics.median(ratios):>9.0f}")
+
+
+def memory():
+    """Peak of the memory that evaluate takes beyond inputs and results: flat where it works in blocks."""
+    print(f"\n{'designs':>10}{'working memory, MB':>22}{'results, MB':>14}")
+    scenario = rdk.scenario("polar_prospecting")
+    for size in 2_000, 20_000, 100_000:
+        population = rdk.random_designs(size, seed=1)
+        tracemalloc.start()
+        result = rdk.evaluate(population, scenario)
+        kept, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        print(f"{size:>10,}{(peak - kept) / 1e6:>22.1f}{kept / 1e6:>14.1f}")
+        del result
+
+
+def counted(function, counts, key, lanes):
+    """`function`, adding the number of lanes of each call to `counts[key]`."""
+    def wrapper(*arguments):
+        counts[key] += lanes(arguments)
+        return function(*arguments)
+    return wrapper
+
+
+def kernel_evaluations():
+    """Wheel-soil solves and contact integrals a design, here and in the transcription, beside the paper's count."""
+    print("\nwheel-soil solves and contact integrals a design (paper: 19 solves)\n"
+          f"{'scenario':28}{'solves':>9}{'integrals':>11}{'scalar solves':>15}{'scalar integrals':>18}")
+    for name in SCENARIOS:
+        scenario, population, few = rdk.scenario(name), rdk.random_designs(2_000, seed=2), 20
+        counts = dict.fromkeys(("solves", "integrals", "scalar solves", "scalar integrals"), 0)
+        kept = {(module, function): getattr(module, function) for module, function in (
+            (contact, "forces"), (contact, "entry_angle"), (contact, "_newton_balance"), (scalar, "wheel_forces"),
+            (scalar, "contact_integrals"))}
+        wrappers = {"forces": ("integrals", lambda a: a[0].size), "entry_angle": ("solves", lambda a: a[1].size),
+                    "_newton_balance": ("solves", lambda a: a[1].size), "wheel_forces": ("scalar solves", lambda a: 1),
+                    "contact_integrals": ("scalar integrals", lambda a: 1)}
+        try:
+            for (module, function), original in kept.items():
+                setattr(module, function, counted(original, counts, *wrappers[function]))
+            rdk.evaluate(population, scenario)
+            for design in population[:few]:
+                scalar.evaluate(design.numbers(), transcribed(scenario))
+        finally:
+            for (module, function), original in kept.items():
+                setattr(module, function, original)
+        print(f"{name:28}{counts['solves'] / 2000:>9.1f}{counts['integrals'] / 2000:>11.1f}"
+              f"{counts['scalar solves'] / few:>15.1f}{counts['scalar integrals'] / few:>18.1f}")
+
+
+def fixed_and_hourly():
+    """A line through the cost of one evaluation against the length of the mission."""
+    scenario, design = rdk.scenario("equatorial_mare_traverse"), rdk.rover("Rashid-1")
+    population = rdk.random_designs(2_000, seed=3)
+    print("\ncost of an evaluation against mission length, 1 to 365 days (paper: 9.1 ms + 3.6 us an hour)")
+    for label, days, repetitions, run, size in (
+            ("one design", (1, 14, 60, 180, 365), 25, lambda s: rdk.evaluate(design, s), 1),
+            ("each of 2,000 designs", (1, 14, 60, 180, 365), 1, lambda s: rdk.evaluate(population, s), 2_000),
+            ("scalar transcription", (1, 60, 365), 3, lambda s: scalar.evaluate(design.numbers(), transcribed(s)), 1)):
+        costs = []
+        for length in days:
+            mission = dataclasses.replace(scenario, duration_earth_days=length)
+            costs.append(statistics.median(milliseconds(run, mission) for _ in range(repetitions)) / size)
+        hourly, fixed = np.polyfit(24 * np.array(days), costs, 1)
+        print(f"  {label:24}{fixed:>9.4f} ms + {1e3 * hourly:.4f} us an hour")
+
+
+def import_time():
+    """Median processor time to import rdk in a fresh interpreter, and of numpy alone."""
+    for module in "numpy", "rdk":
+        code = f"import time; start = time.process_time(); import {module}; print(time.process_time() - start)"
+        seconds = statistics.median(float(subprocess.check_output([sys.executable, "-c", code])) for _ in range(5))
+        print(f"import {module}: {seconds:.2f} s")
+
+
+if __name__ == "__main__":
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})     # one core
+    print(f"Python {platform.python_version()}, numpy {np.__version__}, {platform.machine()}, one core\n")
+    speed()
+    memory()
+    kernel_evaluations()
+    fixed_and_hourly()
+    print()
+    import_time()
