@@ -1304,38 +1304,36 @@ def dominated_designs(mass_kg, slope_deg, dominated, chosen):
     return figure
 
 
-def weighted_sums(mass_kg, range_km, weight, pick):
-    """A front, and the points that the best weighted sum picks from it.
+def weighted_sums(mass_kg, height_m, wheel_count, weight, pick):
+    """A front of mass and obstacle capability, and the points that the best weighted sum picks from it.
 
     Parameters
     ----------
-    mass_kg, range_km : ndarray, shape (n,)
+    mass_kg, height_m, wheel_count : ndarray, shape (n,)
         The front.
     weight : ndarray, shape (m,)
-        Weight of range in the sum, 0 to 1, rising.
+        Weight of the obstacle capability in the sum, 0 to 1, rising.
     pick : ndarray of int, shape (m,)
         Which point each weight picks.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Left, the picked points, the larger the more weights pick them, and the hull that joins them; right,
-        the picked range against the weight.
+        Left, the front and the picked points, the larger the more weights pick them; right, the picked obstacle
+        capability against the weight.
     """
     figure, (ax, right) = _axes(1, 2, figsize=(9.4, 3.8), sharey=True)
     picked, counts = np.unique(pick, return_counts=True)
-    ax.plot(mass_kg, range_km, "o", color=BLUE, markersize=4, label="front")
-    order = picked[np.argsort(mass_kg[picked])]
-    ax.plot(mass_kg[order], range_km[order], "--", color=ORANGE, lw=1)
-    ax.scatter(mass_kg[picked], range_km[picked], 20 + 700 * counts / counts.sum(), marker="s",
-               facecolors="none", edgecolors=ORANGE, linewidths=1.5, label="picked by a weighted sum")
-    ax.set(xscale="log", xlabel="total mass (kg)", ylabel="range (km)")
-    ticks = [t for t in (7, 8, 10, 15, 20, 30, 40, 60) if min(mass_kg) <= t <= max(mass_kg)]
-    ax.set_xticks(ticks, [str(t) for t in ticks])
-    ax.minorticks_off()
+    for wheels, marker, colour in (4, "o", BLUE), (6, "^", GREEN):
+        here = wheel_count == wheels
+        ax.plot(mass_kg[here], height_m[here], marker, color=colour, markersize=4, label=f"{wheels} wheels")
+    ax.scatter(mass_kg[picked], height_m[picked], 60 + 400 * counts / counts.sum(), marker="s", linewidths=1.5,
+               facecolors="none", edgecolors=ORANGE, label="picked by a weighted sum")
+    ax.plot(mass_kg[picked], height_m[picked], "--", color=ORANGE, lw=1)
+    ax.set(xlabel="total mass (kg)", ylabel="obstacle capability (m)")
     ax.legend(fontsize=9, loc="lower right")
-    right.plot(weight, range_km[pick], color=ORANGE, drawstyle="steps-mid")
-    right.set(xlabel="weight of range (mass has the rest)")
+    right.plot(weight, height_m[pick], color=ORANGE, drawstyle="steps-mid")
+    right.set(xlabel="weight of the obstacle capability (1)")
     return figure
 
 
