@@ -17,8 +17,8 @@ class Binding(NamedTuple):
 
 
 class Limit(NamedTuple):
-    """A requirement, whether it is met, and the numbers in words."""
-    name: str
+    """What a mission needs of one Performance field, whether it is met, and the need in words."""
+    metric: str
     met: bool
     words: str
 
@@ -70,57 +70,64 @@ def binding(design, scenario, performance, model=Model()):
                           f"{100 * p.cruise_speed_m_s:.1f} cm/s.")
 
 
-def limits(design, scenario, performance):
-    """The mission's requirements beside what the design does.
+def limits(design, scenario, performance, model=Model()):
+    """The mission's requirements, each met or missed by what the design does.
+
+    Parameters
+    ----------
+    design, scenario, performance, model
+        As for `binding`.
 
     Returns
     -------
     list of Limit
-        Slope, torque, energy balance, range, obstacle, lunar night: each met or missed, in words.
+        Range, slope, torque, energy balance, obstacle, stall, and the temperatures at noon and in the night.
     """
-    p = performance
-    torque = "no solution" if np.isnan(p.wheel_torque_nm) else f"{p.wheel_torque_nm:.2f} N m needed"
+    p, s = performance, scenario
     return [
-        Limit("slope", bool(p.slope_capability_deg >= scenario.slope_deg),
-              f"climbs {p.slope_capability_deg:.1f} deg, mission {scenario.slope_deg:g} deg"),
-        Limit("torque", bool(p.wheel_torque_nm <= design.peak_wheel_torque_nm),
-              f"{torque}, hub gives {design.peak_wheel_torque_nm:g} N m"),
-        Limit("energy", bool(p.energy_balance_pct >= 0), f"balance {p.energy_balance_pct:+.0f} %, at least 0 %"),
-        Limit("range", bool(p.range_km > 0), f"{p.range_km:.2f} km of {scenario.traverse_limit_km:g} km"),
-        Limit("obstacle", bool(p.obstacle_capability_m >= scenario.required_obstacle_height_m),
-              f"climbs {100 * p.obstacle_capability_m:.1f} cm, mission {100 * scenario.required_obstacle_height_m:g} cm"),
-        Limit("lunar night", bool(p.thermal_survival),
-              f"{p.hot_temperature_c:.0f} degC at noon, {p.cold_temperature_c:.0f} degC at night"),
-    ]
+        Limit("range_km", bool(p.range_km > 0), f"above 0, limit {s.traverse_limit_km:g} km"),
+        Limit("slope_capability_deg", bool(p.slope_capability_deg >= s.slope_deg), f"{s.slope_deg:g} deg"),
+        Limit("wheel_torque_nm", bool(p.wheel_torque_nm <= design.peak_wheel_torque_nm),
+              f"at most {design.peak_wheel_torque_nm:.3g} N m"),
+        Limit("energy_balance_pct", bool(p.energy_balance_pct >= 0), "0 % or more"),
+        Limit("obstacle_capability_m", bool(p.obstacle_capability_m >= s.required_obstacle_height_m),
+              f"{s.required_obstacle_height_m:g} m"),
+        Limit("stalled", not p.stalled and not p.buried, "must drive the slope"),
+        Limit("thermal_survival", bool(p.thermal_survival),
+              f"{p.cold_temperature_c:.0f} to {p.hot_temperature_c:.0f} °C, allowed {model.operating_temperature_min_c:g} "
+              f"to {model.operating_temperature_max_c:g}")]
 
 
-def as_python(design, scenario, call="rdk.evaluate(design, mission)"):
-    """Python that rebuilds a design and a mission and makes a call with them.
+def as_python(design, scenario, model, *calls, baseline=None):
+    """Python that rebuilds a design, a mission and a model, and makes calls with them.
 
     Parameters
     ----------
     design : Design
     scenario : Scenario
+    model : Model
         Single ones.
-    call : str
-        Expression in `design` and `mission`, assigned to `result`.
+    calls : str
+        Lines that use `design`, `mission` and `model`.
+    baseline : Design, optional
+        A second design, for the calls to use as `baseline`.
 
     Returns
     -------
     str
         Source text that runs as it stands.
     """
-    soil_fields = [f.name for f in dataclasses.fields(Soil)]
-    fields = [f.name for f in dataclasses.fields(Scenario) if f.name not in ("soil", "study")]
-    lines = ["import rdk", "", "design = rdk.Design("]
-    lines += [f"    {name}={getattr(design, name)!r}," for name in DESIGN_SPACE]
-    lines += [")", "soil = rdk.Soil("]
-    lines += [f"    {name}={getattr(scenario.soil, name)!r}," for name in soil_fields]
-    lines += [")", "mission = rdk.Scenario(", "    soil=soil,"]
-    lines += [f"    {name}={_source(getattr(scenario, name))}," for name in fields]
-    return "\n".join([*lines, ")", f"result = {call}", ""])
+    changed = {f.name: getattr(model, f.name) for f in dataclasses.fields(Model) if getattr(model, f.name) != f.default}
+    mission = {f.name: getattr(scenario, f.name) for f in dataclasses.fields(Scenario) if f.name not in ("soil", "study")}
+    soil = {f.name: getattr(scenario.soil, f.name) for f in dataclasses.fields(Soil)}
+    rovers = {"design": design} | ({} if baseline is None else {"baseline": baseline})
+    parts = [_built(name, "Design", {n: getattr(rover, n) for n in DESIGN_SPACE}) for name, rover in rovers.items()]
+    parts += [_built("soil", "Soil", soil), _built("mission", "Scenario", mission, "    soil=soil,"),
+              _built("model", "Model", changed)]
+    return "\n".join(["import rdk", "", *parts, *calls, ""])
 
 
-def _source(value):
-    """repr, but for infinity, which is no Python name."""
-    return 'float("inf")' if isinstance(value, float) and value == float("inf") else repr(value)
+def _built(name, kind, values, *more):
+    """Source of `name = rdk.kind(...)`; infinity has no literal in Python."""
+    lines = [f"    {field}={value!r},".replace("=inf,", '=float("inf"),') for field, value in values.items()]
+    return "\n".join([f"{name} = rdk.{kind}(", *lines, *more, ")"]) if lines else f"{name} = rdk.{kind}()"

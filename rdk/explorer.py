@@ -1,105 +1,37 @@
 """The explorer: sliders that answer at once, in a notebook or as an app.
 
-`Explorer` joins a column of linked sliders and number boxes to views: the traverse log, masses, stresses, published
-rovers, attribution, sweeps, the optimiser, a live front, and files. A change only marks the state as changed; one
-worker thread computes the newest state and shows read-outs and picture together, so a burst of moves costs one or two
-answers and nothing stale stays on the screen. Everything also runs without a browser: set a control's value, call
-`settle()`, read the texts.
+`Explorer` joins inputs (rover, mission, search) to views: the traverse log, masses, stresses, published rovers,
+attribution, sweeps, the optimiser, a live front, and files. A change only marks the state as changed; one worker thread
+computes the newest state and shows read-outs and picture together, so a burst of moves costs one or two answers and
+nothing stale stays on the screen. Everything also runs without a browser: `set` an input, `settle()`, read `result`.
 """
 from __future__ import annotations
 
 import base64
+import contextlib
 import dataclasses
-import html as html_module
+import html
 import threading
 import time
+from functools import partial
 
-import ipywidgets as W
 import numpy as np
+from traitlets import TraitError
 
 from . import catalog, explain, keep, pictures
-from .design import DESIGN_SPACE, Design, Model, Scenario, Study, Variable
+from .controls import GOALS, MISSION_SPACE, OWN, START, VIEWS, Controls, Refresher, message, show
+from .design import DESIGN_SPACE, Design, Model, Scenario, Study
 from .mission import evaluate
-from .sampling import attribution, intervals, sweep
-from .tradespace import pareto_front
+from .sampling import attribution, intervals, replaced, sweep, uncertain_inputs
+from .tradespace import Front, search
 
-MISSION_SPACE = {
-    "latitude_deg": Variable(-90, 90, "deg", "", "latitude"),
-    "duration_earth_days": Variable(1, 60, "days", "", "duration"),
-    "slope_deg": Variable(0, 35, "deg", "", "slope"),
-    "duty_cycle": Variable(0, 1, "1", "", "duty cycle"),
-    "payload_mass_kg": Variable(0, 30, "kg", "", "payload mass"),
-    "payload_power_w": Variable(0, 40, "W", "", "payload power"),
-    "required_obstacle_height_m": Variable(0, 0.3, "m", "", "obstacle height"),
-    "panel_tilt_deg": Variable(0, 90, "deg", "", "panel tilt"),
-    "traverse_limit_km": Variable(0, 200, "km", "", "range limit")}
-"""Mission inputs of the explorer, with the span of their sliders."""
-STEPS = {"wheel_radius_m": 0.005, "wheel_width_m": 0.005, "grouser_height_m": 0.001, "grouser_count": 1,
-         "chassis_mass_kg": 0.5, "wheelbase_m": 0.05, "solar_area_m2": 0.01, "battery_capacity_wh": 5,
-         "avionics_power_w": 1, "peak_wheel_torque_nm": 0.05, "latitude_deg": 1, "duration_earth_days": 1,
-         "slope_deg": 1, "duty_cycle": 0.01, "payload_mass_kg": 0.5, "payload_power_w": 1,
-         "required_obstacle_height_m": 0.01, "panel_tilt_deg": 1, "traverse_limit_km": 1}
 READOUTS = (("range_km", "km", 2), ("total_mass_kg", "kg", 2), ("slope_capability_deg", "deg", 1),
-            ("energy_balance_pct", "%", 0), ("obstacle_capability_m", "m", 3), ("slip", "1", 2),
-            ("cruise_speed_m_s", "m/s", 3))
+            ("wheel_torque_nm", "N m", 2), ("energy_balance_pct", "%", 0), ("obstacle_capability_m", "m", 3),
+            ("slip", "", 2), ("cruise_speed_m_s", "m/s", 3))
+FLAGS = (("stalled", "stalled"), ("thermal_survival", "thermal survival"))
 DRAWS = 200                                              # Monte-Carlo draws behind the read-outs
-VIEWS = ("log", "mass", "stress", "rovers", "why", "sweep", "optimise", "live front", "keep")
-NUMERIC = ("range_km", "total_mass_kg", "slope_capability_deg", "energy_balance_pct", "cruise_speed_m_s", "slip",
-           "sinkage_m", "wheel_torque_nm", "final_soc", "average_solar_power_w", "obstacle_capability_m")
-_WIDE = W.Layout(width="auto")
-
-
-class Refresher:
-    """Runs `work` in a thread whenever it is poked; pokes during a run lead to one more run.
-
-    Callbacks may come from any thread: only this thread computes and writes to the screen.
-    """
-
-    def __init__(self, work):
-        self._work, self._changed = work, threading.Condition()
-        self._wanted = self._done = 0
-        self._thread = None
-
-    def poke(self):
-        """Ask for a run with the state as it is now."""
-        with self._changed:
-            self._wanted += 1
-            if self._thread is None:
-                self._thread = threading.Thread(target=self._loop, daemon=True)
-                self._thread.start()
-
-    def _loop(self):
-        while True:
-            with self._changed:
-                target = self._wanted
-                if target == self._done:
-                    self._thread = None
-                    self._changed.notify_all()
-                    return
-            self._work()
-            with self._changed:
-                self._done = target
-
-    def settle(self, timeout_s=60):
-        """Wait until nothing is left to do; raises TimeoutError otherwise."""
-        with self._changed:
-            if not self._changed.wait_for(lambda: self._thread is None and self._wanted == self._done, timeout_s):
-                raise TimeoutError(f"the explorer did not settle within {timeout_s} s")
-
-
-class Control:
-    """A number box with its label and unit, linked to a slider."""
-
-    def __init__(self, name, variable, value):
-        text = variable.label + (f" ({variable.unit})" if variable.unit != "1" else "")
-        whole = variable.kind == "whole"
-        span = dict(min=variable.low, max=variable.high, step=STEPS[name], value=value)
-        box, slider = (W.BoundedIntText, W.IntSlider) if whole else (W.BoundedFloatText, W.FloatSlider)
-        self.box = box(description=text, style={"description_width": "128px"}, layout=W.Layout(width="218px"), **span)
-        self.slider = slider(readout=False, tooltip=text, layout=W.Layout(width="122px", min_width="90px"), **span)
-        self.name = name
-        W.link((self.box, "value"), (self.slider, "value"))
-        self.row = W.HBox([self.box, self.slider])
+PLANE = "total_mass_kg", "range_km", "slope_capability_deg"                # axes of a front's picture
+LIVE = 40, 24                                            # population and generations of a live front from nothing
 
 
 class Explorer:
@@ -108,13 +40,27 @@ class Explorer:
     Parameters
     ----------
     rover : str or Design
-        Where to start: a name of `rdk.rover_names()`, or a design.
+        Where to start: a name of `rdk.rover_names()`, or a design. Values beyond a slider are cut to its end, and the
+        notice says so.
     scenario : str or Scenario
         A name of `rdk.scenario_names()`, or a mission.
     view : str
-        The view shown first, one of VIEWS.
+        The view shown first: "log", "mass", "stress", "rovers", "why", "sweep", "optimise", "live front" or "keep".
     model : Model
-        Coefficients.
+        Coefficients, single numbers.
+
+    Attributes
+    ----------
+    design, scenario : Design, Scenario
+        What the inputs show.
+    result, intervals, binding : Performance, Intervals, Binding
+        What the read-outs show, once settled.
+    front : Front or None
+        The front whose points are listed: of the last search, live front or file shown.
+    inputs : dict of str to widget
+        Every number box and menu by its name, as `set` takes them.
+    error : str
+        What went wrong in the last answer; empty where nothing did.
 
     Examples
     --------
@@ -128,228 +74,234 @@ class Explorer:
     def __init__(self, rover="Rashid-1", scenario="equatorial_mare_traverse", view="log", model=Model()):
         if view not in VIEWS:
             raise ValueError(f"no view {view!r}; choose from {', '.join(VIEWS)}")
+        if model.shape:
+            raise ValueError(f"model must hold single numbers; got arrays of shape {model.shape}")
         design = catalog.rover(rover) if isinstance(rover, str) else rover
         mission = catalog.scenario(scenario) if isinstance(scenario, str) else scenario
-        self.model, self._baseline = model, design
-        self.error, self.result, self.intervals, self.binding = "", None, None, None
-        self.front, self._fronts, self._stop, self._thread = None, {}, threading.Event(), None
+        self.model, self.error, self.result, self.intervals, self.binding = model, "", None, None, None
+        self.front = self._searched = self._live = self._recipe = self._thread = None
+        self._stop, self._lock, self._quiet = threading.Event(), threading.RLock(), 0
+        self._soils = {name: catalog.soil(name) for name in catalog.soil_names()}
         self._published = pictures.published()
         self._figures = {name: pictures.blank() for name in VIEWS}
-        self._quiet, self._call = 0, "rdk.evaluate(design, mission)"
         self._refresher = Refresher(self._refresh)
-        self._build(design, mission, rover if isinstance(rover, str) else "a design", view)
+        self.controls = Controls(self._soils, self._lock)
+        self.inputs = self.controls.inputs
+        self._connect()
         self._put(design, mission)
+        self._baseline = self.design
+        self.set(view=view)
         self.settle()
 
     # ---- state ------------------------------------------------------------------------------------------------
 
     @property
     def design(self):
-        """The Design that the sliders show."""
-        values = {name: control.box.value for name, control in self.controls.items() if name in DESIGN_SPACE}
-        return Design(**values, wheel_count=self.wheels.value)
+        """The Design that the inputs show."""
+        return Design(**{name: self.inputs[name].value for name in DESIGN_SPACE})
 
     @property
     def scenario(self):
-        """The Scenario that the sliders show; the panel faces the noon sun."""
-        values = {name: control.box.value for name, control in self.controls.items() if name in MISSION_SPACE}
-        return Scenario(name=self.mission.value, soil=catalog.soil(self.soil.value), study=catalog.study(
-            self.mission.value), panel_azimuth_deg=0.0 if values["latitude_deg"] < 0 else 180.0, **values)
+        """The Scenario that the inputs show; the panel faces the noon sun."""
+        values = {name: self.inputs[name].value for name in MISSION_SPACE}
+        name = self.inputs["mission"].value
+        return Scenario(name=name, soil=self._soils[self.inputs["soil"].value], study=catalog.study(name),
+                        panel_azimuth_deg=0.0 if values["latitude_deg"] < 0 else 180.0, **values)
 
     def set(self, **values):
-        """Set controls by name: design variables, mission inputs, `wheel_count`, `soil`, `mission`, `rover`, `view`."""
-        menus = {"wheel_count": self.wheels, "soil": self.soil, "mission": self.mission, "rover": self.rover,
-                 "view": self.view}
+        """Set inputs by name, such as `slope_deg=20`, `soil="fjs-1"`, `view="why"` or `population=30`.
+
+        Raises
+        ------
+        ValueError
+            If there is no such input, or it does not take the value; the message says what is allowed.
+        """
         for name, value in values.items():
-            if name not in menus and name not in self.controls:
-                raise ValueError(f"no control {name!r}; choose from {', '.join([*self.controls, *menus])}")
-            widget = menus.get(name) or self.controls[name].box
-            widget.value = value
+            if name not in self.inputs:
+                raise ValueError(f"no input {name!r}; choose from {', '.join(self.inputs)}")
+            widget = self.inputs[name]
+            if hasattr(widget, "min"):
+                whole = isinstance(widget.value, int)
+                if not isinstance(value, (int, float, np.number)) or not widget.min <= value <= widget.max or (
+                        whole and value != int(value)):
+                    kind = "a whole number" if whole else "a number"
+                    raise ValueError(f"{name} must be {kind} from {widget.min:g} to {widget.max:g}; got {value!r}")
+            try:
+                widget.value = value
+            except TraitError:
+                choices = ", ".join(str(choice) for choice in widget._options_values)
+                raise ValueError(f"{name} must be one of {choices}; got {value!r}") from None
 
     def settle(self, timeout_s=60):
         """Wait until read-outs and picture show the present state."""
         self._refresher.settle(timeout_s)
 
-    def _put(self, design, mission=None):
-        """Show a design, and a mission if given, as one change."""
-        self._quiet += 1
-        try:
-            for name, control in self.controls.items():
+    @contextlib.contextmanager
+    def _still(self):
+        """Several changes as one: no other thread sees the middle, no callback acts on it."""
+        with self._lock:
+            self._quiet += 1
+            try:
+                yield
+            finally:
+                self._quiet -= 1
+
+    def _put(self, design=None, mission=None, note=""):
+        """Show a design, a mission or both as one change; the notice says what the sliders could not take."""
+        words = [note] if note else []
+        with self._still():
+            for name, variable in (DESIGN_SPACE | MISSION_SPACE).items():
                 source = design if name in DESIGN_SPACE else mission
                 if source is not None:
-                    control.box.value = min(max(getattr(source, name), control.box.min), control.box.max)
-            self.wheels.value = design.wheel_count
+                    wanted = getattr(source, name)
+                    self.inputs[name].value = value = min(max(wanted, variable.low), variable.high)
+                    if value != wanted:
+                        words.append(f"{variable.label} {wanted:g} cut to {value:g}, the end of its slider")
             if mission is not None:
-                known = mission.soil.name in self.soil.options
-                self.soil.value = mission.soil.name if known else self.soil.value
-                if mission.name in self.mission.options:
-                    self.mission.value = mission.name
-        finally:
-            self._quiet -= 1
+                self.inputs["soil"].value = self._soil_key(mission.soil)
+                menu = self.inputs["mission"]
+                menu.value = mission.name if mission.name in menu.options else OWN
+                if menu.value != OWN and self.scenario != catalog.scenario(menu.value):
+                    menu.value = OWN                     # the name of a catalogued mission, but other values
+                if self.scenario.panel_azimuth_deg != mission.panel_azimuth_deg:
+                    words.append(f"panel turned from {mission.panel_azimuth_deg:g} deg to the noon sun")
+                self._pose(catalog.study(menu.value))
+            if design is not None:
+                same = (name for name in catalog.rover_names() if catalog.rover(name) == self.design)
+                self.inputs["rover"].value = next(same, OWN)
+            self.controls.notice.value = message("; ".join(words), "status")
         self._changed()
 
+    def _soil_key(self, soil):
+        """The soil's entry in the menu; a soil that is not there yet joins it."""
+        for key, known in self._soils.items():
+            if known == soil:
+                return key
+        key = f"{soil.name or 'unnamed'} (loaded)"
+        self._soils[key] = soil
+        self.inputs["soil"].options = list(self._soils)
+        return key
+
     def _changed(self, change=None):
-        if not self._quiet:
-            self._refresher.poke()
+        self._refresher.poke()
 
-    # ---- widgets ----------------------------------------------------------------------------------------------
+    # ---- what the controls do ---------------------------------------------------------------------------------
 
-    def _build(self, design, mission, start, view):
-        self.controls = {n: Control(n, v, getattr(design, n)) for n, v in DESIGN_SPACE.items() if n != "wheel_count"}
-        self.controls |= {n: Control(n, v, min(max(getattr(mission, n), v.low), v.high)) for n, v in
-                          MISSION_SPACE.items()}
-        menu = dict(style={"description_width": "128px"}, layout=W.Layout(width="340px"))
-        self.wheels = W.Dropdown(options=[("4, rigid", 4), ("6, rocker-bogie", 6)], description="wheels", **menu)
-        self.soil = W.Dropdown(options=catalog.soil_names(), value=catalog.soil_names()[0], description="soil", **menu)
-        self.mission = W.Dropdown(options=catalog.scenario_names(), description="mission", **menu)
-        self.rover = W.Dropdown(options=[*catalog.rover_names(), "a design"], value=start, description="start from",
-                                **menu)
-        self.view = W.ToggleButtons(options=VIEWS, value=view, description="view",
-                                    style={"button_width": "auto", "description_width": "40px"})
-        self.readout, self.picture, self.panel = W.HTML(), W.HTML(), W.VBox()
-        names = [n for n in DESIGN_SPACE if n != "wheel_count"]
-        rover_box = W.VBox([self.rover, *(self.controls[n].row for n in names[:4]), self.wheels,
-                            *(self.controls[n].row for n in names[4:])])
-        mission_box = W.VBox([self.mission, self.soil, *(self.controls[n].row for n in MISSION_SPACE)])
-        self._sides = {"rover": rover_box, "mission": mission_box}
-        self.side = W.ToggleButtons(options=list(self._sides), description="inputs",
-                                    style={"button_width": "110px", "description_width": "60px"})
-        mission_box.layout.display = "none"
-        self.side.observe(self._show_side, "value")
-        self._panels = {"why": self._build_why(), "sweep": self._build_sweep(), "optimise": self._build_optimise(),
-                        "live front": self._build_live(), "keep": self._build_keep()}
-        for panel in self._panels.values():
-            panel.layout.display = "none"
-        left = W.VBox([self.side, rover_box, mission_box], layout=W.Layout(flex="0 0 352px", overflow="hidden"))
-        right = W.VBox([self.readout, self.view, *self._panels.values(), self.picture],
-                       layout=W.Layout(flex="1 1 480px", min_width="0"))
-        self.widget = W.HBox([left, right], layout=W.Layout(width="100%", flex_flow="row wrap"))
-        self.widget.add_class("rdk-explorer")
-        for control in self.controls.values():
-            control.box.observe(self._changed, "value")
-        for widget in (self.wheels, self.soil, self.view):
-            widget.observe(self._changed, "value")
-        self.mission.observe(self._on_mission, "value")
-        self.rover.observe(self._on_rover, "value")
+    def _connect(self):
+        special = {"rover": self._on_rover, "mission": self._on_mission, "view": self._on_view, "page": self._on_page,
+                   "point": self._on_point}
+        special |= {name: partial(self._on_value, "rover") for name in DESIGN_SPACE}
+        special |= {name: partial(self._on_value, "mission") for name in (*MISSION_SPACE, "soil")}
+        for name, widget in self.inputs.items():
+            self._watch(widget, special.get(name, self._changed))
+        self._watch(self.controls.upload, self._on_upload)
+        self.controls.run.on_click(lambda _: self.optimise())
+        self.controls.cancel.on_click(lambda _: self._stop.set())
 
-    def _show_side(self, change):
-        for name, box in self._sides.items():
-            box.layout.display = None if name == change.new else "none"
+    def _watch(self, widget, action):
+        """Act on a widget's new value, one callback at a time, but for changes made by the explorer itself."""
+        def act(change):
+            with self._lock:
+                if not self._quiet:
+                    action(change)
+        widget.observe(act, "value")
 
-    def _on_mission(self, change):
-        if not self._quiet:
-            self._put(self.design, catalog.scenario(change.new))
+    def _on_value(self, owner, change):
+        with self._still():
+            self.inputs[owner].value = OWN               # no longer the rover or the mission of that name
+        self._changed()
 
     def _on_rover(self, change):
-        if not self._quiet and change.new in catalog.rover_names():
-            self._put(catalog.rover(change.new))
+        if change.new != OWN:
+            self._put(design=catalog.rover(change.new))
+
+    def _on_mission(self, change):
+        if change.new != OWN:
+            self._put(mission=catalog.scenario(change.new))
+        else:
+            self._changed()
+
+    def _on_page(self, change):
+        show(self.controls.pages, change.new)
+
+    def _on_view(self, change):
+        page = {"optimise": "search", "live front": "mission"}.get(change.new)
+        if page:
+            self.inputs["page"].value = page
+        self.controls.picture.add_class("rdk-waiting")   # of the view before
+        self._changed()
+
+    def _on_point(self, change):
+        if change.new is not None:
+            self._put(self.front.designs[change.new])
+
+    def _on_upload(self, change):
+        for file in change.new:
+            self.load(file["name"], file["content"])
+        with self._still():
+            self.controls.upload.value = ()              # so that the same file can be loaded again
 
     def _repr_mimebundle_(self, **kwargs):
-        return self.widget._repr_mimebundle_(**kwargs)
-
-    def _build_why(self):
-        narrow = dict(style={"description_width": "60px"}, layout=W.Layout(width="230px"))
-        self.baseline = W.Dropdown(options=[*catalog.rover_names(), "the design at the start"], description="baseline",
-                                   value="the design at the start", **narrow)
-        self.why_metric = W.Dropdown(options=[(pictures.label(n), n) for n in NUMERIC], description="metric", **narrow)
-        for widget in (self.baseline, self.why_metric):
-            widget.observe(self._changed, "value")
-        return W.HBox([self.baseline, self.why_metric])
-
-    def _build_sweep(self):
-        narrow = dict(style={"description_width": "60px"}, layout=W.Layout(width="190px"))
-        fields = [(self.controls[n].box.description, n) for n in self.controls if n != "duration_earth_days"]
-        self.sweep_first = W.Dropdown(options=fields, description="along", **narrow)
-        self.sweep_second = W.Dropdown(options=[("nothing else", ""), *fields], description="and", **narrow)
-        self.sweep_metric = W.Dropdown(options=[(pictures.label(n), n) for n in NUMERIC], description="metric", **narrow)
-        for widget in (self.sweep_first, self.sweep_second, self.sweep_metric):
-            widget.observe(self._changed, "value")
-        return W.HBox([self.sweep_first, self.sweep_second, self.sweep_metric], layout=W.Layout(flex_flow="row wrap"))
-
-    def _build_optimise(self):
-        short = dict(style={"description_width": "84px"}, layout=W.Layout(width="165px"))
-        self.objectives = {name: W.Dropdown(
-            options=["max", "min", "ignore"], value=direction, description=text, style={"description_width": "100px"},
-            layout=W.Layout(width="185px")) for name, text, direction in (
-                ("range_km", "range", "max"), ("total_mass_kg", "mass", "min"), ("slope_capability_deg", "slope", "max"))}
-        self.minimum_range = W.BoundedFloatText(value=0.1, min=0, max=1000, step=0.1, description="range >= km", **short)
-        self.minimum_slope = W.BoundedFloatText(value=0, min=0, max=35, step=1, description="slope >= deg", **short)
-        self.maximum_mass = W.BoundedFloatText(value=100, min=1, max=1000, step=1, description="mass <= kg", **short)
-        self.population = W.BoundedIntText(value=50, min=8, max=400, step=2, description="population", **short)
-        self.generations = W.BoundedIntText(value=60, min=1, max=1000, step=10, description="generations", **short)
-        self.seed = W.BoundedIntText(value=13, min=0, max=10**6, description="seed", **short)
-        self.run = W.Button(description="Run", button_style="", layout=W.Layout(width="90px"))
-        self.cancel = W.Button(description="Cancel", disabled=True, layout=W.Layout(width="90px"))
-        self.progress = W.IntProgress(description="progress", layout=W.Layout(width="220px"))
-        self.status = W.HTML('<div role="status">ready</div>')
-        self.points = W.Select(options=[], description="points", rows=5, style={"description_width": "60px"},
-                               layout=W.Layout(width="100%", max_width="520px"))
-        self.run.on_click(lambda _: self.optimise())
-        self.cancel.on_click(lambda _: self._stop.set())
-        self.points.observe(self._on_point, "value")
-        wrap = W.Layout(flex_flow="row wrap")
-        return W.VBox([W.HBox(list(self.objectives.values()), layout=wrap),
-                       W.HBox([self.minimum_range, self.minimum_slope, self.maximum_mass], layout=wrap),
-                       W.HBox([self.population, self.generations, self.seed], layout=wrap),
-                       W.HBox([self.run, self.cancel, self.progress]), self.status, self.points])
-
-    def _build_live(self):
-        self.live_status = W.HTML('<div role="status">Change the mission: the front follows.</div>')
-        return W.VBox([self.live_status])
-
-    def _build_keep(self):
-        self.upload = W.FileUpload(accept=".json,.csv", multiple=False, description="Load a file")
-        self.upload.observe(self._on_upload, "value")
-        self.links, self.message, self.code = W.HTML(), W.HTML(), W.Textarea(
-            description="as Python", disabled=False, style={"description_width": "70px"},
-            layout=W.Layout(width="100%", height="300px"))
-        return W.VBox([self.links, W.HBox([self.upload, self.message]), self.code])
+        """The widgets; for readers without a kernel, the read-outs as text and the picture."""
+        still = {"text/plain": self.text()}
+        if "base64," in self.controls.picture.value:
+            still["image/png"] = self.controls.picture.value.split("base64,")[1].split('"')[0]
+        return {**self.controls.widget._repr_mimebundle_(**kwargs), **still}
 
     # ---- answers ----------------------------------------------------------------------------------------------
 
     def _refresh(self):
         """Compute the present state and show it; an error becomes a message, never a traceback in a thread."""
+        with self._lock:
+            view, design, scenario = self.inputs["view"].value, self.design, self.scenario
+        see, text = self.controls, ""
         try:
-            view, design, scenario = self.view.value, self.design, self.scenario
             result = evaluate(design, scenario, self.model)
-            spans = intervals(design, scenario, draws=DRAWS, model=self.model)
-            self.result, self.intervals = result, spans
-            self.binding = explain.binding(design, scenario, result, self.model)
-            text = self._readout_html(design, scenario, result, spans)
-            picture = self._draw(view, design, scenario, result, spans)
-            self.error = ""
+            self.intervals = intervals(design, scenario, draws=DRAWS, model=self.model)
+            self.result, self.binding = result, explain.binding(design, scenario, result, self.model)
+            self._rows = self._tabulate(design, scenario)
+            see.readout.value = text = self._readout_html()
+            picture, self.error = self._draw(view, design, scenario, result), ""
         except Exception as error:                       # anything at all: the app must go on and say what happened
             self.error = f"{type(error).__name__}: {error}"
-            text, picture, view = _message(self.error), "", self.view.value
-        self.readout.value = text
-        for name, panel in self._panels.items():
-            panel.layout.display = None if name == view else "none"
-        self.picture.value = picture
+            see.readout.value, picture = text, message(self.error)
+        show(see.panels, view)
+        see.picture.value = picture
+        see.picture.remove_class("rdk-waiting")
 
-    def _readout_html(self, design, scenario, result, spans):
+    def _tabulate(self, design, scenario):
+        """Rows of the read-outs: what, value, 90 % interval, and the limit in words."""
         rows = []
         for name, unit, digits in READOUTS:
-            value, low, high = (float(x) for x in (getattr(result, name), spans.low[name], spans.high[name]))
-            unit = "" if unit == "1" else unit
-            rows.append(f"<tr><th scope='row'>{pictures.label(name).split(' (')[0]}</th>"
-                        f"<td><b>{value:.{digits}f}</b> {unit}</td><td>{low:.{digits}f} to {high:.{digits}f} {unit}</td></tr>")
-        for name, title in ("thermal_survival", "survives heat and night"), ("stalled", "stalled"):
-            rows.append(f"<tr><th scope='row'>{title}</th><td><b>{'yes' if getattr(result, name) else 'no'}</b></td>"
-                        f"<td>yes in {100 * float(spans.low[name]):.0f} % of draws</td></tr>")
-        met = "".join(f"<li>{'✓ met' if limit.met else '✗ missed'}: {limit.name} - {limit.words}</li>"
-                      for limit in explain.limits(design, scenario, result))
-        return ("<style>.rdk-readout{line-height:1.25;font-size:13px}.rdk-readout table{border-collapse:collapse}"
-                ".rdk-readout th{text-align:left;font-weight:normal;padding-right:10px}.rdk-readout td{padding-right:12px;"
-                "font-variant-numeric:tabular-nums}.rdk-readout ul{margin:0;padding-left:4px;list-style:none}"
-                ".rdk-readout .two{display:flex;flex-wrap:wrap;gap:0 22px}.rdk-readout p{margin:4px 0}</style>"
-                f"<div class='rdk-readout' role='status'><p><b>{html_module.escape(self.binding.sentence)}</b></p>"
-                f"<div class='two'><table><tr><th scope='col'>read-out</th><th scope='col'>value</th><th scope='col'>"
-                f"90 % interval</th></tr>{''.join(rows)}</table><ul>{met}</ul></div></div>")
+            value, low, high = (float(x) for x in (getattr(self.result, name), self.intervals.low[name],
+                                                   self.intervals.high[name]))
+            rows.append((name, pictures.label(name).split(" (")[0], _words(value, digits, unit),
+                         _words(low, digits) + " to " + _words(high, digits)))
+        for name, title in FLAGS:
+            share = 100 * float(self.intervals.low[name])
+            rows.append((name, title, "yes" if getattr(self.result, name) else "no", f"yes in {share:.0f} %"))
+        needed = {limit.metric: ("✓ met: " if limit.met else "✗ missed: ") + limit.words
+                  for limit in explain.limits(design, scenario, self.result, self.model)}
+        return [(*row, needed.get(name, "")) for name, *row in rows]
 
-    def _draw(self, view, design, scenario, result, spans):
+    def _readout_html(self):
+        rows = "".join(f"<tr><th scope='row'>{title}</th><td><b>{value}</b></td><td>{span}</td><td>{limit}</td></tr>"
+                       for title, value, span, limit in self._rows)
+        head = "".join(f"<th scope='col'>{title}</th>" for title in ("read-out", "value", "90 % interval", "needed"))
+        return (f"<div role='status'><b>{html.escape(self.binding.sentence)}</b></div>"
+                f"<table class='rdk-readout'><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>")
+
+    def text(self):
+        """The read-outs as plain text."""
+        if self.error:
+            return self.error
+        rows = [f"{title:24}{value:>11}   {span:22}{limit}".rstrip() for title, value, span, limit in self._rows]
+        return "\n".join([self.binding.sentence, "", *rows])
+
+    def _draw(self, view, design, scenario, result):
         figure = self._figures[view]
         if view == "log":
-            alt = pictures.log(figure, result, scenario)
+            alt = pictures.log(figure, result, scenario, self.model.soc_initial)
         elif view == "mass":
             alt = pictures.mass(figure, result)
         elif view == "stress":
@@ -358,216 +310,214 @@ class Explorer:
             names, designs = self._published
             others = evaluate(designs, scenario, self.model)
             alt = pictures.among_rovers(figure, result, (others.total_mass_kg, others.range_km, names), [
-                (spans.low[n], spans.high[n]) for n in ("total_mass_kg", "range_km")])
+                (self.intervals.low[n], self.intervals.high[n]) for n in ("total_mass_kg", "range_km")])
         elif view == "why":
-            name = self.baseline.value
-            baseline = self._baseline if name not in catalog.rover_names() else catalog.rover(name)
-            why, metric = attribution(design, baseline, scenario, self.model), self.why_metric.value
+            name, metric = self.inputs["baseline"].value, self.inputs["why_metric"].value
+            why = attribution(design, self._reference(name), scenario, self.model)
             if metric not in why.contributions:
-                return _message(f"{pictures.label(metric)} has no value in some mixture of the two designs (a buried "
-                                "wheel), so that its difference cannot be shared out. Choose another metric.")
+                return message(f"{pictures.label(metric)} has no value in some mixture of the two designs (a buried "
+                               "wheel), so that its difference cannot be shared out. Choose another metric.")
             alt = pictures.why(figure, metric, why.contributions[metric],
                                float(getattr(why.baseline_performance, metric)), float(getattr(result, metric)), name)
         elif view == "sweep":
             alt = self._draw_sweep(figure, design, scenario, result)
         elif view == "optimise":
-            return self._draw_front(figure, self.front, result)
+            if self._searched is None:
+                return message("No front yet: press Run under the inputs 'search'.", "status")
+            return self._draw_front(figure, self._searched, result, "front of the search")
         elif view == "live front":
-            return self._draw_live(figure, scenario, result)
+            if self._live is None or self._live.scenario != _plain(scenario):
+                self.controls.picture.add_class("rdk-waiting")
+                self._live = live_front(scenario, self._live, self.model)
+            return self._draw_front(figure, self._live, result, "live front of this mission")
         else:
             self._show_files(design, scenario, result)
             return ""
         return pictures.html(figure, alt)
 
-    def _span(self, name):
-        """Values of a control's field across its slider, whole numbers where it must be."""
-        box = self.controls[name].box
-        values = np.linspace(box.min, box.max, 25)
-        return np.unique(np.rint(values)) if name == "grouser_count" else values
+    def _reference(self, name):
+        return self._baseline if name == START else catalog.rover(name)
+
+    def _sweep_values(self):
+        """The fields to sweep, each with values across its slider, whole numbers where it must be."""
+        fields = filter(None, (self.inputs["sweep_first"].value, self.inputs["sweep_second"].value))
+        return {n: np.linspace(self.inputs[n].min, self.inputs[n].max, 25).round(0 if n == "grouser_count" else 9)
+                for n in fields}
 
     def _draw_sweep(self, figure, design, scenario, result):
-        first, second, metric = self.sweep_first.value, self.sweep_second.value, self.sweep_metric.value
-        names, rovers = self._published
-        places = []
-        for name in filter(None, (first, second)):
-            places.append(np.asarray(getattr(rovers, name)) if name in DESIGN_SPACE else None)
-        if not second or second == first:
-            values = self._span(first)
-            found = sweep(design, scenario, {first: values}, self.model).performance
-            if first in DESIGN_SPACE:
-                many = dataclasses.replace(design, **{first: values})
-                span = intervals(many, scenario, draws=60, model=self.model)
-                low, high = span.low[metric], span.high[metric]
-            else:                                        # a mission's field: an interval at each of its values
-                spans = [intervals(design, dataclasses.replace(scenario, **{first: v}), draws=60, model=self.model)
-                         for v in values]
-                low, high = ([getattr(s, end)[metric] for s in spans] for end in ("low", "high"))
-            others = None
-            if places[0] is not None:
-                others = (places[0], np.asarray(getattr(evaluate(rovers, scenario, self.model), metric), float), names)
-            return pictures.curve(figure, first, metric, values, np.asarray(getattr(found, metric), float), low, high,
-                                  (self.controls[first].box.value, float(getattr(result, metric))), others)
-        values = self._span(first), self._span(second)
-        found = sweep(design, scenario, dict(zip((first, second), values)), self.model).performance
-        grid = np.nan_to_num(np.asarray(getattr(found, metric), float))
-        here = self.controls[first].box.value, self.controls[second].box.value
-        others = (*places, names) if all(p is not None for p in places) else None
-        return pictures.contour(figure, (first, second), metric, values, grid, here, others)
+        over, metric, (names, fleet) = self._sweep_values(), self.inputs["sweep_metric"].value, self._published
+        fields, values, here = list(over), list(over.values()), [self.inputs[n].value for n in over]
+        # a mission's field is not the rovers' own: no place for them on its axis
+        places = [getattr(fleet, n) for n in fields] if all(n in DESIGN_SPACE for n in fields) else None
+        grid = np.asarray(getattr(sweep(design, scenario, over, self.model).performance, metric), float)
+        if len(fields) == 2:
+            return pictures.contour(figure, fields, metric, values, grid, here, places and (*places, names))
+        draws = {n: v[:, None] for n, v in uncertain_inputs(scenario, 60, model=self.model).items()}
+        cloud = evaluate(*replaced(design, scenario, self.model, {**draws, **over}))
+        low, high = np.quantile(np.nan_to_num(getattr(cloud, metric)), [0.05, 0.95], axis=0)
+        others = places and (*places, getattr(evaluate(fleet, scenario, self.model), metric), names)
+        return pictures.curve(figure, fields[0], metric, values[0], grid, low, high,
+                              (*here, float(getattr(result, metric))), others)
 
-    # ---- optimiser --------------------------------------------------------------------------------------------
+    # ---- fronts -----------------------------------------------------------------------------------------------
+
+    def _pose(self, study):
+        """Set the search as the study poses it."""
+        for name, goal in GOALS.items():
+            self.inputs[goal].value = study.objectives.get(name, "ignore")
+        limits = {name: limit for name, _, limit in study.constraints}
+        self.inputs["minimum_range_km"].value = limits.get("range_km", 0)
+        self.inputs["maximum_mass_kg"].value = limits.get("total_mass_kg", self.inputs["maximum_mass_kg"].max)
+        self.inputs["minimum_slope_deg"].value = limits.get("slope_capability_deg", 0)
+        if study.seed is not None:
+            self.inputs["seed"].value = study.seed
 
     def _problem(self):
-        """Objectives and constraints that the controls ask for."""
-        objectives = {name: menu.value for name, menu in self.objectives.items() if menu.value != "ignore"}
-        constraints = [("range_km", ">=", self.minimum_range.value), ("total_mass_kg", "<=", self.maximum_mass.value)]
-        if self.minimum_slope.value > 0:
-            constraints.append(("slope_capability_deg", ">=", self.minimum_slope.value))
-        return objectives, constraints
+        """What `pareto_front` needs for the search that the inputs pose; a limit at its loose end is none."""
+        value = {name: widget.value for name, widget in self.inputs.items()}
+        limits = [("range_km", ">=", value["minimum_range_km"]), ("total_mass_kg", "<=", value["maximum_mass_kg"]),
+                  ("slope_capability_deg", ">=", value["minimum_slope_deg"])]
+        loose = 0, self.inputs["maximum_mass_kg"].max
+        return dict(population=value["population"], generations=value["generations"], seed=value["seed"],
+                    objectives={name: value[goal] for name, goal in GOALS.items() if value[goal] != "ignore"},
+                    constraints=[limit for limit in limits if limit[2] not in loose])
 
     def optimise(self, wait=False):
-        """Search in the background; with `wait`, return when the search has ended."""
-        if self._thread is not None and self._thread.is_alive():
-            return
-        self._stop.clear()
-        self.run.disabled, self.cancel.disabled = True, False
-        self._thread = threading.Thread(target=self._search, daemon=True)
-        self._thread.start()
+        """Search in the background for the mission as it stands; with `wait`, return when the search has ended."""
+        with self._still():
+            if self._thread is None:
+                problem, see = self._problem(), self.controls
+                self._stop.clear()
+                see.run.disabled, see.cancel.disabled = True, False
+                see.progress.max, see.progress.value = problem["generations"], 0
+                see.status.value = message("starting", "status")
+                self._thread = threading.Thread(target=self._search, args=(_plain(self.scenario), problem))
+                self._thread.start()
+            thread = self._thread
         if wait:
-            self._thread.join()
+            thread.join()
             self.settle()
 
-    def _search(self):
+    def _search(self, scenario, problem):
         """The search's thread: progress, a growing front, cancel."""
-        drawn = time.monotonic()
-        self.progress.max, self.progress.value = self.generations.value, 0
+        drawn, see = time.monotonic(), self.controls
 
         def follow(progress):
             nonlocal drawn
-            self.progress.value = progress.generation
-            self.status.value = f'<div role="status">generation {progress.generation} of {progress.generations}</div>'
+            see.progress.value = progress.generation
+            see.status.value = message(f"generation {progress.generation} of {progress.generations}", "status")
             if time.monotonic() - drawn > 0.4:
-                self.front = progress.front()
-                drawn = time.monotonic()
+                self._searched, self._recipe = progress.front(), None
                 self._changed()
-            return self._stop.is_set()
+                drawn = time.monotonic()
+            return self._stop.is_set() or not threading.main_thread().is_alive()     # the program is ending
 
         try:
-            objectives, constraints = self._problem()
-            scenario = dataclasses.replace(self.scenario, study=Study())     # the range limit that the slider shows
-            size = self.population.value, self.generations.value, self.seed.value
-            front = pareto_front(scenario, *size, objectives, constraints, self.model, on_generation=follow)
-            self._call = (f"rdk.pareto_front(\n    mission, {size[0]}, {size[1]}, seed={size[2]}, objectives={objectives!r},"
-                          f"\n    constraints={constraints!r})")
-            done = front.message or f"done: {len(front)} designs after {self.generations.value} generations"
+            front = search(scenario, model=self.model, on_generation=follow, **problem)
+            done = front.message or f"done: {len(front)} designs after {problem['generations']} generations"
+            recipe = {**problem, "generations": len(front.objective_history)}    # fewer where it was cancelled
         except Exception as error:
-            front, done = None, f"{type(error).__name__}: {error}"
-        self.front = front
-        rows = [] if front is None else [
-            (f"{i + 1}: {m:.1f} kg, {r:.2f} km, {s:.1f} deg", i) for i, (m, r, s) in enumerate(zip(
-                front.performance.total_mass_kg, front.performance.range_km, front.performance.slope_capability_deg))]
-        self._quiet += 1
-        self.points.value = None
-        self.points.options, self.points.value = rows, None
-        self._quiet -= 1
-        self.status.value = _message(done, "status")
-        self.run.disabled, self.cancel.disabled = False, True
+            front, recipe, done = None, None, f"{type(error).__name__}: {error}"
+        with self._still():
+            self._searched, self._recipe, self._thread = front, recipe, None
+            self._offer(front)
+            see.status.value = message(done, "status")
+            see.run.disabled, see.cancel.disabled = False, True
         self._changed()
 
-    def _on_point(self, change):
-        """A point of the front becomes the point design."""
-        if not self._quiet and change.new is not None and self.front is not None:
-            self._quiet += 1
-            self.rover.value = "a design"
-            self._quiet -= 1
-            self._put(self.front.designs[change.new])
+    def _offer(self, front):
+        """List the points of a front for picking."""
+        with self._still():
+            if front is not self.front:
+                self.front, p = front, None if front is None else front.performance
+                self.controls.points.options = [] if p is None else [
+                    (f"{i + 1}: {m:.1f} kg, {r:.2f} km, {s:.1f} deg", i)
+                    for i, (m, r, s) in enumerate(zip(p.total_mass_kg, p.range_km, p.slope_capability_deg))]
+                self.controls.points.value = None
 
-    def _draw_front(self, figure, front, result, title=""):
-        if front is None:
-            return _message("No front yet: press Run.", "status")
-        p = front.performance
-        return pictures.html(figure, pictures.front(
-            figure, p.total_mass_kg, p.range_km, ("total_mass_kg", "range_km"),
-            picked=self.points.value if front is self.front else None, here=(result.total_mass_kg, result.range_km),
-            size=p.slope_capability_deg, title=title or "larger points climb steeper slopes"))
-
-    def _draw_live(self, figure, scenario, result):
-        """A small front for the mission as it stands, warm-started from the last one."""
-        begun = time.monotonic()
-        key = repr(scenario)
-        if self._fronts.get("key") != key:
-            self._fronts["front"] = live_front(scenario, self._fronts.get("front"), self.model)
-            self._fronts["key"] = key
-        front = self._fronts["front"]
-        self.live_status.value = _message(
-            front.message or f"{len(front)} designs for this mission; change latitude, slope, soil or payload under "
-                             "'mission' and the front follows.", "status")
-        self._fronts["seconds"] = time.monotonic() - begun
-        return self._draw_front(figure, front, result, "live front; larger points climb steeper slopes")
+    def _draw_front(self, figure, front, result, title):
+        self._offer(front)
+        mass, *others = (getattr(front.performance, name) for name in PLANE)
+        here = [getattr(result, name) for name in PLANE]
+        alt = pictures.front(figure, mass, others, PLANE, self.controls.points.value, here,
+                             title=f"{title}: {len(front)} designs")
+        return message(front.message, "status") + pictures.html(figure, alt, pictures.places(figure, mass, others))
 
     # ---- files ------------------------------------------------------------------------------------------------
 
     def _show_files(self, design, scenario, result):
         files = {"design.json": keep.to_json(design, scenario), "design.csv": keep.to_csv(design, result)}
         if self.front is not None and len(self.front):
-            files |= {"front.json": keep.to_json(self.front.designs, scenario),
+            files |= {"front.json": keep.to_json(self.front.designs, self.front.scenario),
                       "front.csv": keep.to_csv(self.front.designs, self.front.performance)}
-        self.links.value = "Download: " + ", ".join(
+        self.controls.links.value = "Download: " + ", ".join(
             f'<a download="{name}" href="data:text/plain;base64,{base64.b64encode(text.encode()).decode()}">{name}</a>'
             for name, text in files.items())
-        self.code.value = explain.as_python(design, scenario, self._call)
+        self.controls.code.value = self.python(design, scenario)
 
-    def _on_upload(self, change):
-        if change.new:
-            file = change.new[0]
-            self.load(file["name"], bytes(file["content"]))
+    def python(self, design=None, scenario=None):
+        """The Python that reproduces what the menu `script` names, as it stands on the screen."""
+        design = self.design if design is None else design
+        scenario = self.scenario if scenario is None else scenario
+        wanted = self.inputs["script"].value
+        if wanted == "the front":
+            if self.front is None or self.front is not self._searched or self._recipe is None:
+                return "# No front of a finished search is listed: choose the view 'optimise' and press Run.\n"
+            recipe = ", ".join(f"{name}={value!r}" for name, value in self._recipe.items())
+            return explain.as_python(design, self.front.scenario, self.model,
+                                     f"front = rdk.pareto_front(mission, {recipe}, model=model)")
+        if wanted == "why":
+            return explain.as_python(design, scenario, self.model, "why = rdk.attribution(design, baseline, mission, model)",
+                                     baseline=self._reference(self.inputs["baseline"].value))
+        if wanted == "the sweep":
+            over = {name: values.tolist() for name, values in self._sweep_values().items()}
+            return explain.as_python(design, scenario, self.model, f"curve = rdk.sweep(design, mission, {over!r}, model)")
+        return explain.as_python(design, scenario, self.model, "result = rdk.evaluate(design, mission, model)",
+                                 f"intervals = rdk.intervals(design, mission, draws={DRAWS}, model=model)")
 
     def load(self, name, content):
-        """Show a design, or a front, from a file's name and bytes; the message says what was wrong with it."""
+        """Show a design, or a front, from a file's name and bytes; the notice says what was wrong with it."""
         try:
             text = bytes(content).decode("utf-8-sig")
             design, mission = (keep.from_csv(text), None) if name.lower().endswith(".csv") else keep.from_json(text)
-        except (ValueError, UnicodeDecodeError) as error:
-            self.message.value = _message(f"{name} was not loaded: {error}")
+        except ValueError as error:                      # also where the bytes are no text
+            self.controls.notice.value = message(f"{name} was not loaded: {error}")
             return
-        words = "design"
+        note = f"{name} loaded"
         if design.shape:
-            performance = evaluate(design, mission or self.scenario, self.model)
-            from .tradespace import Front
-            self.front = Front(design, performance, mission or self.scenario, self.model, Study())
-            self._quiet += 1
-            self.points.value = None
-            self.points.options = [(f"{i + 1}: {m:.1f} kg, {r:.2f} km", i) for i, (m, r) in enumerate(zip(
-                performance.total_mass_kg, performance.range_km))]
-            self.points.value = None
-            self._quiet -= 1
-            words, design = f"front of {len(design)} designs; the first is shown", design[0]
-        self.message.value = _message(f"{name} loaded: {words}", "status")
-        self._quiet += 1
-        self.rover.value = "a design"
-        self._quiet -= 1
-        self._put(design, mission)
+            note += f": {len(design)} designs, listed under the inputs 'search'; the first is shown"
+            where = _plain(mission or self.scenario)
+            design = Design(**{n: np.clip(getattr(design, n), v.low, v.high) for n, v in DESIGN_SPACE.items()})
+            self._searched, self._recipe = Front(design, evaluate(design, where, self.model), where, self.model, Study()), None
+            self._offer(self._searched)
+            design = design[0]
+        self._put(design, mission, note)
 
 
-def live_front(scenario, start=None, model=Model(), population=40, generations=24):
+def live_front(scenario, start=None, model=Model()):
     """A front quick enough to follow a slider: a small population, warm-started from the last front.
 
     Parameters
     ----------
     scenario : Scenario
     start : Front, optional
+        With one, half as many generations are enough.
     model : Model
-    population, generations : int
 
     Returns
     -------
     Front
+        Less complete than that of a full search.
     """
-    import warnings
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)     # an empty front carries its message
-        return pareto_front(dataclasses.replace(scenario, study=Study()), population,
-                            generations if start is None else generations // 2, seed=1, start=start, model=model)
+    population, generations = LIVE
+    return search(_plain(scenario), population, generations if start is None else generations // 2, seed=1, start=start,
+                  model=model)
 
 
-def _message(text, role="alert"):
-    return f'<div role="{role}">{html_module.escape(text)}</div>'
+def _plain(scenario):
+    """The mission without its study: a search keeps the range limit that the slider shows."""
+    return dataclasses.replace(scenario, study=Study())
+
+
+def _words(value, digits, unit=""):
+    return "none" if np.isnan(value) else f"{value:.{digits}f} {unit}".rstrip()

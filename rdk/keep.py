@@ -46,7 +46,7 @@ def from_json(text):
     """
     try:
         kept = json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"not a JSON file: {error}") from None
     if not isinstance(kept, dict) or kept.get("format") != "rdk-design-1" or not isinstance(kept.get("design"), dict):
         raise ValueError("not a design kept by rdk: it needs 'format': 'rdk-design-1' and a 'design'")
@@ -55,18 +55,23 @@ def from_json(text):
         return design, None
     values = kept["scenario"]
     try:
-        soil = Soil(name=values["soil"]["name"], **{n: values["soil"][n] for n in _SOIL})
-        return design, Scenario(name=values["name"], soil=soil, **{n: values[n] for n in _MISSION})
+        soil = Soil(name=str(values["soil"]["name"]), **{n: values["soil"][n] for n in _SOIL})
+        scenario = Scenario(name=str(values["name"]), soil=soil, **{n: values[n] for n in _MISSION})
     except (KeyError, TypeError) as error:
-        raise ValueError(f"the file's scenario is damaged: {error}") from None
+        raise ValueError(f"the file's scenario is damaged: {error!r}") from None
+    if scenario.shape:
+        raise ValueError("the file's scenario must hold single numbers")
+    return design, scenario
 
 
 def to_csv(design, performance=None):
     """CSV text: one row a design, its variables first, then its performance if given."""
-    frame = design.to_frame()
-    if performance is not None:
-        frame = frame.join(performance.to_frame())
-    return frame.to_csv(index=False)
+    columns = design.numbers() | ({} if performance is None else performance.numbers())
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(name.replace(".", "_") for name in columns)
+    writer.writerows(zip(*(np.broadcast_to(v, design.shape or 1).tolist() for v in columns.values())))
+    return file.getvalue()
 
 
 def from_csv(text):
@@ -77,7 +82,10 @@ def from_csv(text):
     ValueError
         If a column is missing or a value is not a number or not allowed; the message says which.
     """
-    rows = list(csv.DictReader(io.StringIO(text)))
+    try:
+        rows = list(csv.DictReader(io.StringIO(text), strict=True))
+    except csv.Error as error:
+        raise ValueError(f"not a CSV file: {error}") from None
     if not rows:
         raise ValueError("the CSV file needs a header and at least one row")
     missing = [n for n in DESIGN_SPACE if n not in rows[0]]
@@ -96,4 +104,7 @@ def _design(values):
     missing = [n for n in DESIGN_SPACE if n not in values]
     if missing:
         raise ValueError(f"the file's design lacks {', '.join(missing)}")
-    return Design(**{n: np.array(values[n]) if isinstance(values[n], list) else values[n] for n in DESIGN_SPACE})
+    design = Design(**{n: np.array(values[n]) if isinstance(values[n], list) else values[n] for n in DESIGN_SPACE})
+    if len(design.shape) > 1 or 0 in design.shape:
+        raise ValueError(f"the file must hold one design or a list of some; got shape {design.shape}")
+    return design

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import base64
 import io
+import json
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -15,7 +16,7 @@ from . import catalog, terramechanics
 from .design import DESIGN_SPACE
 from .plots import BLACK, BLUE, GREEN, GREY, ORANGE
 
-SIZE = (6.2, 3.6)                                        # inches, at DPI
+SIZE = (6.0, 3.3)                                        # inches, at DPI
 DPI = 96
 LABELS = {
     "range_km": "range (km)", "total_mass_kg": "total mass (kg)", "slope_capability_deg": "slope capability (deg)",
@@ -42,14 +43,32 @@ def blank(size=SIZE, dpi=DPI):
     return figure
 
 
-def html(figure, alt):
-    """The figure as an `img` element with alternative text."""
+PICK = ("const b=this.getBoundingClientRect(),w=b.width/b.height,x=(event.clientX-b.left)/b.width,"
+        "y=(event.clientY-b.top)/b.height,p=JSON.parse(this.dataset.points);let n=-1,d=0.06;"
+        "p.forEach(([i,u,v])=>{const e=Math.hypot((u-x)*w,v-y);if(e<d){d=e;n=i}});"
+        "const s=this.closest('.rdk-explorer')?.querySelector('.rdk-points select');"
+        "if(s&&n>=0){s.selectedIndex=n;s.dispatchEvent(new Event('change',{bubbles:true}))}")
+"""A click on the picture selects the nearest point, if one is near, in the list of points."""
+
+
+def html(figure, alt, points=()):
+    """The figure as an `img` element with alternative text; `points`, from `places`, can be picked by pointer."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", pil_kwargs={"compress_level": 1})
-    width, height = (figure.get_size_inches() * figure.dpi).astype(int)
+    width, height = int(SIZE[0] * DPI), int(SIZE[1] * DPI)
     words = alt.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;")
-    return (f'<img class="rdk-picture" width="{width}" height="{height}" style="max-width:100%;height:auto" alt="{words}" '
+    pick = f'style="cursor:pointer" data-points="{json.dumps(points)}" onclick="{PICK}" ' if len(points) else ""
+    return (f'<img class="rdk-picture" width="{width}" height="{height}" {pick}alt="{words}" '
             f'src="data:image/png;base64,{base64.b64encode(buffer.getvalue()).decode()}">')
+
+
+def places(figure, x, ys):
+    """Points of a picture as (index, right, down), in shares of its width and height, for each of its panels."""
+    spots = []
+    for axes, y in zip(figure.axes, ys):
+        right, up = figure.transFigure.inverted().transform(axes.transData.transform(np.column_stack([x, y]))).T
+        spots += zip(range(len(x)), right.round(4).tolist(), (1 - up).round(4).tolist())
+    return spots
 
 
 def _axes(figure, build=None, margins=None):
@@ -57,8 +76,9 @@ def _axes(figure, build=None, margins=None):
     if not figure.axes:
         for axes in build(figure) if build else [figure.subplots()]:
             axes.grid(alpha=0.3)
+            axes.set_axisbelow(True)
             axes.spines["top"].set_visible(False)
-            axes.tick_params(labelsize=8)
+            axes.tick_params(labelsize=9)
         figure.subplots_adjust(**margins)
     for axes in figure.axes:
         for artist in (*axes.lines, *axes.patches, *axes.texts, *axes.collections, axes.get_legend()):
@@ -69,10 +89,21 @@ def _axes(figure, build=None, margins=None):
     return figure.axes if build else figure.axes[0]
 
 
-def log(figure, result, scenario):
+def _rovers(axes, x, y, names, colour=BLACK):
+    """Squares with names; rovers at one place share a label."""
+    axes.plot(x, y, "s", color=ORANGE, mec="white", ms=6, label="published rovers")
+    shared = {}
+    for spot, name in sorted(zip(zip(np.round(x, 6), np.round(y, 6)), names)):
+        shared.setdefault(spot, []).append(name)
+    for i, (spot, found) in enumerate(shared.items()):   # above and below in turn: neighbours seldom collide
+        axes.annotate(", ".join(found), spot, xytext=(5, (-12, 5)[i % 2]), textcoords="offset points", fontsize=8,
+                      color=colour, annotation_clip=True)
+
+
+def log(figure, result, scenario, soc_initial=1.0):
     """Sunlight and load, charge, and distance, hour by hour."""
     log = result.log
-    days = log.time_h / 24
+    days, at_start = log.time_h / 24, np.insert(log.time_h / 24, 0, 0.0)
 
     def build(figure):
         upper, lower = figure.subplots(2, 1, sharex=True)
@@ -83,12 +114,12 @@ def log(figure, result, scenario):
     upper.plot(days, log.load_w, color=BLACK, ls="--", label="load")
     upper.set_ylabel("power (W)", fontsize=9)
     upper.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=2, fontsize=8, frameon=False, borderpad=0)
-    lower.plot(days, 100 * log.soc, color=BLUE)
+    lower.plot(at_start, 100 * np.insert(log.soc, 0, soc_initial), color=BLUE)
     lower.set(ylim=(0, 105), xlabel="Earth days after sunrise")
-    lower.set_ylabel("charge (%)", fontsize=9, color=BLUE)
-    distance.plot(days, log.distance_km, color=GREEN, ls="-.")
+    lower.set_ylabel("charge (%), solid", fontsize=9)
+    distance.plot(at_start, np.insert(log.distance_km, 0, 0.0), color=GREEN, ls="-.")
     distance.set_ylim(0, max(float(log.distance_km[-1]) * 1.1, 0.1))
-    distance.set_ylabel("distance (km), dash-dot", fontsize=9, color=GREEN)
+    distance.set_ylabel("distance (km), dash-dot", fontsize=9)
     distance.grid(False)
     return (f"Two charts over {days[-1]:.0f} Earth days. Above, sunlight up to {log.solar_w.max():.0f} W against a load of "
             f"up to {log.load_w.max():.0f} W. Below, charge falls to {100 * result.minimum_soc:.0f} % and ends at "
@@ -137,18 +168,16 @@ def among_rovers(figure, result, rovers, spans=None):
     """Range against mass: this design, with its intervals, among published rovers on the same mission."""
     axes = _axes(figure, margins=dict(left=0.11, right=0.97, top=0.95, bottom=0.14))
     mass_kg, range_km, names = rovers
-    axes.plot(mass_kg, range_km, "s", color=GREY, ms=6)
-    for x, y, name in zip(mass_kg, range_km, names):
-        axes.annotate(name, (x, y), xytext=(4, 5), textcoords="offset points", fontsize=8)
+    _rovers(axes, mass_kg, range_km, names)
     if spans is not None:
         (x0, x1), (y0, y1) = spans
         axes.plot([x0, x1], [result.range_km] * 2, color=BLUE, lw=1.2)
         axes.plot([result.total_mass_kg] * 2, [y0, y1], color=BLUE, lw=1.2)
     axes.plot(result.total_mass_kg, result.range_km, "o", color=BLUE, ms=10)
-    axes.annotate("this design", (result.total_mass_kg, result.range_km), xytext=(8, -12), textcoords="offset points",
+    axes.annotate("this design", (result.total_mass_kg, result.range_km), xytext=(8, 7), textcoords="offset points",
                   fontsize=9, color=BLUE, weight="bold")
     axes.set(xlabel="total mass (kg), logarithmic", ylabel="range (km)", xscale="log")
-    axes.set_ylim(-0.04 * max(*range_km, result.range_km, 1), None)
+    axes.set_ylim(*(np.array([-0.06, 1.1]) * max(*range_km, result.range_km, 1)))
     ticks = [5, 10, 20, 50, 100, 200]
     axes.set_xticks(ticks, [f"{t}" for t in ticks])
     axes.minorticks_off()
@@ -161,11 +190,11 @@ def among_rovers(figure, result, rovers, spans=None):
 def why(figure, metric, contributions, before, after, baseline_name):
     """Contributions of the design variables as a waterfall from the baseline to this design."""
     values = np.asarray(contributions)
-    scale = max(abs(after - before), np.abs(values).max(), 1e-12)
-    shown = [i for i in np.argsort(-np.abs(values)) if abs(values[i]) > 1e-3 * scale][:9]
+    least = max(1e-3 * np.abs(values).max(), 1e-9 * max(abs(before), abs(after)), 1e-12)      # below: rounding
+    shown = [i for i in np.argsort(-np.abs(values)) if abs(values[i]) > least][:9]
     rest = values.sum() - values[shown].sum()
-    names = [label(list(DESIGN_SPACE)[i]) for i in shown] + (["the rest"] if abs(rest) > 1e-3 * scale else [])
-    steps = [values[i] for i in shown] + ([rest] if abs(rest) > 1e-3 * scale else [])
+    names = [label(list(DESIGN_SPACE)[i]) for i in shown] + (["the rest"] if abs(rest) > least else [])
+    steps = [values[i] for i in shown] + ([rest] if abs(rest) > least else [])
     edges = before + np.concatenate([[0.0], np.cumsum(steps)])
     axes = _axes(figure, margins=dict(left=0.27, right=0.95, top=0.92, bottom=0.14))
     for i, step in enumerate(steps):
@@ -181,6 +210,7 @@ def why(figure, metric, contributions, before, after, baseline_name):
     axes.set_xlabel(label(metric))
     axes.set_title(f"{baseline_name} (dotted) {before:.3g} to this design (dashed) {after:.3g}", fontsize=9, loc="left")
     if not steps:
+        axes.text(0.5, 0.5, f"the same {label(metric)} as {baseline_name}", ha="center", transform=axes.transAxes)
         return f"No difference in {label(metric)} between this design and {baseline_name}: both {after:.3g}."
     words = "; ".join(f"{n} {s:+.3g}" for n, s in zip(names, steps))
     return f"Bars that add up from {before:.3g} ({baseline_name}) to {after:.3g} in {label(metric)}: {words}."
@@ -193,10 +223,7 @@ def curve(figure, name, metric, values, nominal, low, high, here, rovers):
     axes.plot(values, nominal, color=BLUE, label="nominal")
     axes.plot(*here, "o", color=BLACK, ms=9, label="this design")
     if rovers is not None:
-        x, y, names = rovers
-        axes.plot(x, y, "s", color=ORANGE, ms=5, label="published rovers")
-        for a, b, n in zip(x, y, names):
-            axes.annotate(n, (a, b), xytext=(4, 4), textcoords="offset points", fontsize=7)
+        _rovers(axes, *rovers)
     axes.set(xlabel=label(name), ylabel=label(metric))
     axes.legend(fontsize=8, frameon=False)
     return (f"{label(metric)} against {label(name)}: from {nominal[0]:.3g} at {values[0]:.3g} to {nominal[-1]:.3g} at "
@@ -214,11 +241,7 @@ def contour(figure, names, metric, values, grid, here, rovers):
         axes.clabel(lines, fontsize=8, fmt="%.3g")
     axes.plot(*here, "o", color="white", mec=BLACK, ms=10)
     if rovers is not None:
-        x, y, labels = rovers
-        axes.plot(x, y, "s", color=ORANGE, mec="white", ms=6, clip_on=True)
-        for a, b, n in zip(x, y, labels):
-            axes.annotate(n, (a, b), xytext=(4, 4), textcoords="offset points", fontsize=7, color="white",
-                          annotation_clip=True)
+        _rovers(axes, *rovers, colour="white")
     axes.set(xlabel=label(names[0]), ylabel=label(names[1]), xlim=(values[0][0], values[0][-1]),
              ylim=(values[1][0], values[1][-1]))
     figure.colorbar(filled, ax=axes, pad=0.02).set_label(label(metric), fontsize=9)
@@ -226,23 +249,27 @@ def contour(figure, names, metric, values, grid, here, rovers):
             f"{np.nanmax(grid):.3g}; the circle marks this design.")
 
 
-def front(figure, x, y, names, picked=None, here=None, size=None, title=""):
-    """Two objectives of a front, the picked point ringed, this design as a cross."""
-    axes = _axes(figure, margins=dict(left=0.12, right=0.97, top=0.92, bottom=0.14))
+def front(figure, x, ys, names, picked=None, here=None, size=None, title=""):
+    """A front: one objective, or several in panels, against another; the picked point ringed, this design a cross."""
+    ys = [ys] if np.ndim(ys) < 2 else ys
     area = 30.0 if size is None else 14 + 60 * (size - size.min()) / max(np.ptp(size), 1e-12)
-    axes.scatter(x, y, s=area, color=BLUE, edgecolor="white", lw=0.5)
-    if picked is not None:
-        axes.scatter(x[picked], y[picked], s=170, facecolor="none", edgecolor=BLACK, lw=1.8)
-    if here is not None:
-        axes.plot(*here, "X", color=ORANGE, ms=9)
-        axes.annotate("this design", here, xytext=(7, -10), textcoords="offset points", fontsize=8, color=ORANGE)
-    axes.set(xlabel=label(names[0]), ylabel=label(names[1]))
-    axes.set_title(title, fontsize=9, loc="left")
+    panels = _axes(figure, lambda figure: np.atleast_1d(figure.subplots(1, len(ys))),
+                   dict(left=0.1, right=0.98, top=0.92, bottom=0.15, wspace=0.28))
+    for axes, y, name, at in zip(panels, ys, names[1:], here[1:] if here is not None else [None] * len(ys)):
+        axes.scatter(x, y, s=area, color=BLUE, edgecolor="white", lw=0.5)
+        if picked is not None:
+            axes.scatter(x[picked], y[picked], s=170, facecolor="none", edgecolor=BLACK, lw=1.8)
+        if at is not None:
+            axes.plot(here[0], at, "X", color=ORANGE, mec=BLACK, ms=10)
+            axes.annotate("this design", (here[0], at), xytext=(8, -11), textcoords="offset points", fontsize=8)
+        axes.margins(0.07, 0.12)
+        axes.set(xlabel=label(names[0]), ylabel=label(name))
+    panels[0].set_title(title, fontsize=9, loc="left")
     if not len(x):
-        axes.text(0.5, 0.5, "no design meets the constraints yet", ha="center", transform=axes.transAxes)
-        return "An empty front: no design meets the constraints yet."
-    return (f"Front of {len(x)} designs: {label(names[0])} from {x.min():.3g} to {x.max():.3g}, {label(names[1])} from "
-            f"{y.min():.3g} to {y.max():.3g}.")
+        panels[0].text(0.5, 0.5, "no design meets the constraints", ha="center", transform=panels[0].transAxes)
+        return "An empty front: no design meets the constraints."
+    spans = ", ".join(f"{label(name)} from {min(v):.3g} to {max(v):.3g}" for name, v in zip(names, [x, *ys]))
+    return f"Front of {len(x)} designs: {spans}."
 
 
 def published():

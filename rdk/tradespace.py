@@ -195,6 +195,15 @@ def pareto_front(scenario, population=50, generations=60, seed=None, objectives=
     ----------
     Deb et al. (2002), doi:10.1109/4235.996017; Blank & Deb (2020), doi:10.1109/ACCESS.2020.2990567.
     """
+    front = search(scenario, population, generations, seed, objectives, constraints, model, start, on_generation, bounds)
+    if not len(front):
+        warnings.warn(front.message, UserWarning, stacklevel=2)
+    return front
+
+
+def search(scenario, population=50, generations=60, seed=None, objectives=None, constraints=None, model=Model(),
+           start=None, on_generation=None, bounds=None):
+    """`pareto_front` without its warning: for threads, where warnings go astray. An empty front has its message."""
     if not isinstance(scenario, Scenario):
         raise TypeError(f"scenario must be a Scenario; got {type(scenario).__name__}")
     population = int(check("population", population, 4, whole=True, scalar=True))
@@ -231,7 +240,6 @@ def pareto_front(scenario, population=50, generations=60, seed=None, objectives=
         message = (f"no design of {len(history)} generations met the constraints {words}; {problem.nearest_miss}"
                    if math.isfinite(problem.least) else
                    f"no design of {len(history)} generations has a solution: the wheels are buried")
-        warnings.warn(message, UserWarning, stacklevel=2)
         front = dataclasses.replace(front, message=message)
     return front
 
