@@ -462,6 +462,9 @@ def _row(*ids):
 class _Evidence:
     """The tables behind the ledger, each computed once when first needed."""
 
+    def __init__(self, executor=None, seed_offset=0):
+        self.executor, self.seed_offset = executor, seed_offset
+
     @functools.cached_property
     def single_wheel(self):
         return single_wheel_summary().set_index(["experiment", "quantity"])
@@ -479,11 +482,9 @@ class _Evidence:
         return flown_rovers().set_index("rover")
 
     @functools.cached_property
-    def fronts(self):
-        """The four canonical fronts at the paper's budget and seeds, by scenario name."""
-        from . import tradespace                         # loads pymoo
-        fronts = tradespace.study([catalog.scenario(name) for name in catalog.scenario_names("canonical")])
-        return {case.scenario.name: front for case, front in fronts.items()}
+    def searches(self):
+        from .ledger import Searches                     # loads pymoo
+        return Searches(self.executor, self.seed_offset)
 
 
 _EXPERIMENTS = {"ding": "ding-2011", "hurrell": "hurrell-2025", "wang": "wang-han-2016"}
@@ -562,7 +563,8 @@ def _shear_shift(evidence, id):
 
 @_row("load_transfer_pct")
 def _load_transfer(evidence):
-    largest = max(abs(load_transfer(front.designs, front.scenario)).max() for front in evidence.fronts.values())
+    fronts = evidence.searches.canonical.values()
+    largest = max(abs(load_transfer(front.designs, front.scenario)).max() for front in fronts)
     tenacious = load_transfer(catalog.rover("Tenacious"), catalog.scenario("highland_slope_capability"))
     return largest, (f"largest change over the four fronts; where the pull is nearly used up it is far more: "
                      f"{tenacious:.0f} % for Tenacious on apollo-loose")
@@ -625,13 +627,18 @@ def accepts(accept, value):
     return bool(np.all(inside))
 
 
-def paper_ledger(kinds=("deterministic",)):
+def paper_ledger(kinds=("deterministic", "stochastic", "cost"), executor=None, seed_offset=0):
     """Every number that the paper reports beside ours, computed afresh.
 
     Parameters
     ----------
     kinds : sequence of str
-        Which rows of `paper_targets.csv`: "deterministic", "stochastic" or "cost".
+        Which rows of `paper_targets.csv`: "deterministic", "stochastic" (numbers that a search's seed moves) or
+        "cost" (timings: they differ from run to run).
+    executor : concurrent.futures.Executor, optional
+        Runs the searches in parallel, with the same result.
+    seed_offset : int
+        Added to the paper's seeds, to see what chance does to the stochastic rows.
 
     Returns
     -------
@@ -647,6 +654,7 @@ def paper_ledger(kinds=("deterministic",)):
     NotImplementedError
         If a row has no computation.
     """
+    from . import ledger  # noqa: F401, registers the rows that need searches
     targets = catalog.table("paper_targets.csv")
     known = list(dict.fromkeys(targets.kind))
     for kind in kinds:
@@ -656,7 +664,7 @@ def paper_ledger(kinds=("deterministic",)):
     missing = [name for name in targets.id if name not in _LEDGER]
     if missing:
         raise NotImplementedError("no computation for the ledger rows " + ", ".join(missing))
-    evidence, rows = _Evidence(), []
+    evidence, rows = _Evidence(executor, seed_offset), []
     for target in targets.itertuples():
         found = _LEDGER[target.id](evidence)
         ours, why = found if isinstance(found, tuple) and isinstance(found[-1], str) else (found, "")

@@ -1,0 +1,545 @@
+"""What searches say about designs: rules read off fronts, how far to trust them, and rediscovery, as tables.
+
+A rule is a statistic of a front. Each function takes fronts, or runs the searches it needs, and returns a
+tidy pandas table: one row a front, a design, an input or a rover. A single search is one draw from a noisy
+process, so the tables keep the seed; and a search that is not finished leaves variables that no objective
+feels where chance put them.
+"""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pandas as pd
+
+from . import catalog
+from ._fields import check
+from .design import DESIGN_SPACE, Design, Model
+from .mission import _mass as mass_of
+from .mission import evaluate
+from .sampling import METRICS, decode, drawn, perturbed, random_designs, replaced
+from .terramechanics import wheel_forces
+from .tradespace import search
+from .validation import single_wheel_conditions
+
+SHEAR_SCALES = (0.70, 0.85, 1.00, 1.15, 1.30)
+"""Factors on the shear stress in the paper's robustness study."""
+OBSTACLE_HEIGHTS_M = tuple(round(0.02 * i, 2) for i in range(12))
+"""Required obstacle heights of the paper's architecture study, 0 to 0.22 m."""
+CEILING_SHARE = 0.01
+"""A variable is at a bound when within this share of its searched range from it; the paper names no share."""
+REDISCOVERED = {"Tenacious": "mare_micro", "CADRE-unit": "polar_micro", "Rashid-1": "mare_micro",
+                "Pragyan": "polar_micro", "MoonRanger": "polar_micro", "Yutu-2": "mare_micro"}
+"""Class-generic scenario of each rover of the rediscovery check."""
+CUBE = tuple(name for name, v in DESIGN_SPACE.items() if v.kind == "continuous" and name != "wheelbase_m")
+"""The eight variables of the rediscovery distance: continuous, and read by some sub-model."""
+
+
+# ---- statistics of fronts ----------------------------------------------------------------------------------
+
+def front_statistics(fronts):
+    """What the designs of each front have in common.
+
+    Parameters
+    ----------
+    fronts : iterable of Front
+        Such as `study(...).values()`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a front: scenario, seed, shear_scale, obstacle_height_m, generations, designs; smallest and
+        largest range, mass and slope capability (`range_min_km` ...), median slope capability and the slope
+        capability of the designs at the largest range (median, `slope_at_cap_deg`); range of the lightest
+        design; share with four wheels; shares at a bound: wheel radius, grouser height and grouser count at
+        their ceilings, wheel width at its floor (all within 1 % of the searched range) and in the lowest 5 %
+        of it; medians of battery, array, radius and width; hypervolume. NaN where a front is empty.
+    """
+    rows = []
+    for front in fronts:
+        d, p = front.designs, front.performance
+        row = dict(
+            scenario=front.scenario.name, seed=front.study.seed, shear_scale=front.model.shear_scale,
+            obstacle_height_m=front.scenario.required_obstacle_height_m,
+            generations=len(front.objective_history), designs=len(front))
+        if len(front):
+            at = {name: _place(d, name) for name in ("wheel_radius_m", "wheel_width_m", "grouser_height_m",
+                                                     "grouser_count")}
+            slope, capped = p.slope_capability_deg, p.range_km >= p.range_km.max() * (1 - 1e-6)
+            row |= dict(
+                range_min_km=p.range_km.min(), range_max_km=p.range_km.max(), range_lightest_km=p.range_km[0],
+                mass_min_kg=p.total_mass_kg.min(), mass_max_kg=p.total_mass_kg.max(),
+                slope_min_deg=slope.min(), slope_median_deg=np.median(slope), slope_max_deg=slope.max(),
+                slope_at_cap_deg=np.median(slope[capped]),
+                four_wheels=np.mean(d.wheel_count == 4),
+                radius_at_ceiling=np.mean(at["wheel_radius_m"] >= 1 - CEILING_SHARE),
+                grouser_height_at_ceiling=np.mean(at["grouser_height_m"] >= 1 - CEILING_SHARE),
+                grouser_count_at_ceiling=np.mean(at["grouser_count"] >= 1 - CEILING_SHARE),
+                width_at_floor=np.mean(at["wheel_width_m"] <= CEILING_SHARE),
+                width_lowest_5pct=np.mean(at["wheel_width_m"] <= 0.05),
+                radius_median_m=np.median(d.wheel_radius_m),
+                width_median_m=np.median(d.wheel_width_m), battery_median_wh=np.median(d.battery_capacity_wh),
+                array_median_m2=np.median(d.solar_area_m2), hypervolume=front.history[-1])
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _place(designs, name):
+    """Where a variable lies in its searched range, 0 to 1."""
+    variable = DESIGN_SPACE[name]
+    return (getattr(designs, name) - variable.low) / (variable.high - variable.low)
+
+
+def over_generations(scenarios, seeds, generations, **options):
+    """Front statistics at several generations of the same searches.
+
+    Parameters
+    ----------
+    scenarios : sequence of Scenario
+    seeds : sequence of int
+    generations : sequence of int
+        Where to look; each search runs to the last of them.
+    **options
+        Passed to `pareto_front`, such as `population`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Rows of `front_statistics`; the front at generation g is that of a search of g generations.
+    """
+    wanted, fronts = {int(check("generations", g, 1, whole=True, scalar=True)) for g in generations}, []
+
+    def look(progress):
+        if progress.generation in wanted:
+            fronts.append(progress.front())
+
+    for scenario in scenarios:
+        for seed in seeds:
+            search(scenario, generations=max(wanted), seed=seed, on_generation=look, **options)
+    return front_statistics(fronts)
+
+
+def crossover(statistics):
+    """Lowest required obstacle height at which rocker-bogie designs enter each front.
+
+    Parameters
+    ----------
+    statistics : pandas.DataFrame
+        Of fronts at several obstacle heights.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a scenario: scenario, crossover_m (NaN if they never do), highest_rigid_m, the largest height
+        at which a four-wheel design is still on the front.
+    """
+    rows = []
+    for name, group in statistics.groupby("scenario", sort=False):
+        height = group.obstacle_height_m
+        rows.append(dict(scenario=name, crossover_m=height[group.four_wheels < 1].min(),
+                         highest_rigid_m=height[group.four_wheels > 0].max()))
+    return pd.DataFrame(rows)
+
+
+# ---- what a variable is worth ------------------------------------------------------------------------------
+
+def ballasted(designs, scenario, total_mass_kg, model=Model()):
+    """Designs brought to a total mass by their chassis, so that a variable can be judged at equal mass.
+
+    Parameters
+    ----------
+    designs : Design
+    scenario : Scenario
+        Gives the payload.
+    total_mass_kg : float or ndarray
+        Wanted total mass, in kg.
+    model : Model
+
+    Returns
+    -------
+    Design
+        With the chassis mass changed, and nothing else. Where even the lightest chassis of the design space
+        is too heavy, that chassis is taken and the design stays heavier than wanted.
+    """
+    light = dataclasses.replace(designs, chassis_mass_kg=DESIGN_SPACE["chassis_mass_kg"].low)
+    heavy = dataclasses.replace(designs, chassis_mass_kg=DESIGN_SPACE["chassis_mass_kg"].low + 1)
+    lightest = mass_of(light, scenario, model).total_kg
+    gain = mass_of(heavy, scenario, model).total_kg - lightest           # total mass is linear in the chassis
+    extra = np.maximum((np.asarray(total_mass_kg) - lightest) / gain, 0)
+    return dataclasses.replace(designs, chassis_mass_kg=light.chassis_mass_kg + extra)
+
+
+def swapped(front, **changes):
+    """Every design of a front with a variable changed and the mass made up in the chassis.
+
+    If no objective moves, nothing in the search holds that variable where it is.
+
+    Parameters
+    ----------
+    front : Front
+    **changes : float
+        Design variables and their new values.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a design: its mass, the old values (`old_...`), and by how much range, mass and slope
+        capability change (`range_change_km`, `mass_change_kg`, `slope_change_deg`).
+    """
+    old = front.performance
+    new = evaluate(ballasted(dataclasses.replace(front.designs, **changes), front.scenario, old.total_mass_kg,
+                             front.model), front.scenario, front.model)
+    return pd.DataFrame(dict(
+        total_mass_kg=old.total_mass_kg, **{f"old_{name}": getattr(front.designs, name) for name in changes},
+        range_change_km=new.range_km - old.range_km, mass_change_kg=new.total_mass_kg - old.total_mass_kg,
+        slope_change_deg=new.slope_capability_deg - old.slope_capability_deg))
+
+
+def dominated(front, others):
+    """Which designs of a front are dominated by a design of other fronts, in the front's own objectives.
+
+    Parameters
+    ----------
+    front : Front
+    others : iterable of Front
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    mine = _minimised(front.performance, front.study.objectives)
+    theirs = np.concatenate([_minimised(other.performance, front.study.objectives) for other in others])
+    no_worse = (theirs[:, None] <= mine).all(-1)
+    return (no_worse & (theirs[:, None] < mine).any(-1)).any(0)
+
+
+def _minimised(performance, objectives):
+    return np.stack([np.atleast_1d(getattr(performance, name)) * (-1 if way == "max" else 1)
+                     for name, way in objectives.items()], axis=1)
+
+
+# ---- scenario families -------------------------------------------------------------------------------------
+
+def family(name, count, seed=0):
+    """Scenarios spread over a canonical scenario's family: latitude, duration and slope vary together.
+
+    A Latin hypercube over the ranges of the paper's Table 1; everything else stays as catalogued, the panel
+    is tilted anew for each latitude.
+
+    Parameters
+    ----------
+    name : str
+        A canonical scenario.
+    count : int
+        How many, 1 or more.
+    seed : int
+        Same seed, same scenarios.
+
+    Returns
+    -------
+    list of Scenario
+
+    Raises
+    ------
+    ValueError
+        If the scenario has no family.
+    """
+    from scipy.stats import qmc
+    scenario = catalog.scenario(name)
+    row = next(row for row in catalog.rows("scenarios.csv") if row["scenario"] == name)
+    ranges = [row[f"family_{field}"] for field in ("latitude_deg", "duration_days", "slope_deg")]
+    if not all(ranges):
+        known = ", ".join(catalog.scenario_names("canonical"))
+        raise ValueError(f"scenario {name!r} has no family; choose from {known}")
+    count = int(check("count", count, 1, whole=True, scalar=True))
+    low, high = np.array([text.split("..") for text in ranges], float).T
+    points = qmc.scale(qmc.LatinHypercube(3, rng=np.random.default_rng(seed)).random(count), low, high)
+    return [dataclasses.replace(
+        scenario, name=f"{name} {i}", latitude_deg=latitude, duration_earth_days=duration, slope_deg=slope,
+        panel_tilt_deg=min(80.0, abs(latitude)), panel_azimuth_deg=0.0 if latitude < 0 else 180.0)
+        for i, (latitude, duration, slope) in enumerate(points.tolist(), 1)]
+
+
+# ---- what drives a result ----------------------------------------------------------------------------------
+
+def sobol(scenario, metrics=("range_km", "total_mass_kg", "slope_capability_deg"), design=None, count=1024,
+          seed=0, bounds=None, model=Model()):
+    """Sobol indices of metrics: the share of their variance that each input explains.
+
+    Over the design variables, uniform in the design space; or, when a design is given, over the uncertain
+    inputs of `data/uncertainties.csv` for that design. All points are evaluated in one call.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    metrics : sequence of str
+        Performance fields.
+    design : Design, optional
+        A single design whose uncertainty is asked for.
+    count : int
+        Size of the two base samples, a power of 2; the evaluation is of count * (inputs + 2) points.
+    seed : int
+    bounds : dict of str to (float, float), optional
+        Narrower limits of design variables.
+    model : Model
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a metric and input: metric, input, first_order, total_order, and the 90 % bootstrap interval
+        of the total order, total_low and total_high.
+
+    References
+    ----------
+    Saltelli et al. (2010), doi:10.1016/j.cpc.2009.09.018, as implemented by scipy.stats.sobol_indices.
+    """
+    from scipy.special import ndtri
+    from scipy.stats import qmc, sobol_indices
+    count = int(check("count", count, 2, whole=True, scalar=True))
+    if count & (count - 1):
+        raise ValueError(f"count must be a power of 2; got {count}")
+    unknown = [name for name in metrics if name not in METRICS]
+    if unknown:
+        raise ValueError(f"metrics: no Performance field {unknown[0]!r}; choose from {', '.join(METRICS)}")
+    table = catalog.rows("uncertainties.csv") if design is not None else []
+    names = [row["name"] for row in table] if design is not None else list(DESIGN_SPACE)
+    random = np.random.default_rng(seed)
+    # two samples of the unit cube, and the first with one column after the other taken from the second
+    A, B = np.hsplit(qmc.Sobol(2 * len(names), rng=random).random(count), 2)
+    mixed = [np.where(np.arange(len(names)) == i, B, A) for i in range(len(names))]
+    cube = np.concatenate([A, B, *mixed])
+    if design is None:
+        result = evaluate(decode(cube, bounds), scenario, model)
+    else:
+        changes = {}
+        for row, u in zip(table, cube.T):
+            low, high = float(row["low"]), float(row["high"])
+            share = u if row["distribution"] == "uniform" else 0.5 + ndtri(u) / ndtri(0.95) / 2
+            changes[row["name"]] = perturbed(row, scenario, model, low + (high - low) * share)
+        result = evaluate(*replaced(design, scenario, model, changes))
+    values = np.stack([np.asarray(getattr(result, name), float) for name in metrics])
+    f_A, f_B, *f_AB = np.split(values, len(names) + 2, axis=1)
+    f_AB = np.stack(f_AB)                                # (inputs, metrics, count)
+
+    def indices(lanes):
+        found = sobol_indices(n=count, func=dict(f_A=f_A[:, lanes], f_B=f_B[:, lanes], f_AB=f_AB[..., lanes]))
+        return np.atleast_2d(found.first_order), np.atleast_2d(found.total_order)
+
+    first, total = indices(np.arange(count))
+    again = [indices(random.integers(count, size=count))[1] for _ in range(100)]
+    low, high = np.quantile(again, [0.05, 0.95], axis=0)
+    return pd.DataFrame([
+        dict(metric=metric, input=name, first_order=first[m, i], total_order=total[m, i], total_low=low[m, i],
+             total_high=high[m, i])
+        for m, metric in enumerate(metrics) for i, name in enumerate(names)])
+
+
+def interval_coverage(draws=500, seed=0, level=0.9, experiments=("ding-2011", "hurrell-2025")):
+    """Whether measured pulls fall inside the intervals that the table of uncertainties gives single wheels.
+
+    Each measured point is predicted with the uncertain soil parameters and shear scale of
+    `data/uncertainties.csv` around its own soil; the rows on masses and power do not act on a wheel.
+
+    Parameters
+    ----------
+    draws : int
+    seed : int
+    level : float
+        Probability that an interval should hold, 0 to 1.
+    experiments : sequence of str
+        Tests of `data/single_wheel.csv`; by default those inside the kernel's regime.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a point: experiment, wheel, slip, measured_n, nominal_n, low_n, high_n, inside.
+    """
+    level = check("level", level, above=0, below=1, scalar=True)
+    points = catalog.table("single_wheel.csv")
+    points = points[points.experiment.isin(list(experiments))].reset_index(drop=True)
+    if points.empty:
+        raise ValueError(f"experiments: no points of {experiments!r} in single_wheel.csv")
+    wheel, soils, load, slip = single_wheel_conditions(points)
+    mission = dataclasses.replace(catalog.scenario("equatorial_mare_traverse"), soil=soils)  # for its soil
+    model, random, changes = Model(), np.random.default_rng(seed), {}
+    table = [row for row in catalog.rows("uncertainties.csv")
+             if row["record"] == "soil" or row["name"] == "shear_scale"]
+    for row in table:
+        changes[row["name"]] = perturbed(row, mission, model, drawn(row, draws, random)[:, None])
+    scale = changes.pop("shear_scale")
+    soils_drawn = dataclasses.replace(soils, **changes)
+    pulls = wheel_forces(wheel, soils_drawn, load, slip, shear_scale=scale).drawbar_pull_n
+    low, high = np.nanquantile(pulls, [(1 - level) / 2, (1 + level) / 2], axis=0)
+    measured = points.drawbar_pull_n.to_numpy(float)
+    return pd.DataFrame(dict(
+        experiment=points.experiment, wheel=points.wheel, slip=slip, measured_n=measured,
+        nominal_n=wheel_forces(wheel, soils, load, slip).drawbar_pull_n, low_n=low, high_n=high,
+        inside=(measured >= low) & (measured <= high)))
+
+
+# ---- rediscovery -------------------------------------------------------------------------------------------
+
+def unit_cube(designs):
+    """Designs as points of the eight-dimensional unit cube of `CUBE`, shape (n, 8)."""
+    return np.stack(np.broadcast_arrays(*(np.atleast_1d(_place(designs, name)) for name in CUBE)), axis=1)
+
+
+@dataclasses.dataclass(frozen=True)
+class _Target:
+    """A published rover on its class-generic mission with its own payload, and its search's mass ceiling."""
+    name: str
+    scenario: object
+    design: Design
+    performance: object
+    ceiling_kg: float
+
+    @classmethod
+    def of(cls, name):
+        if name not in REDISCOVERED:
+            raise ValueError(f"no rover {name!r} in the check; choose from {', '.join(REDISCOVERED)}")
+        design, payload = catalog.rover(name), float(catalog.rover_row(name)["payload_mass_kg"])
+        scenario = dataclasses.replace(catalog.scenario(REDISCOVERED[name]), payload_mass_kg=payload)
+        performance = evaluate(design, scenario)
+        return cls(name, scenario, design, performance, 1.10 * performance.total_mass_kg)
+
+    def distances(self, designs):
+        return np.linalg.norm(unit_cube(designs) - unit_cube(self.design), axis=1)
+
+
+def rediscovery(rovers=tuple(REDISCOVERED), population=60, generations=(16,), seeds=range(5), executor=None):
+    """Distance of published rovers to the fronts of their missions, under a ceiling of 1.10 times their mass.
+
+    Parameters
+    ----------
+    rovers : sequence of str
+        Among `REDISCOVERED`.
+    population : int
+    generations : sequence of int
+        Where to look; the paper's figure is at 16.
+    seeds : sequence of int
+        One search a seed; the fronts are merged.
+    executor : concurrent.futures.Executor, optional
+        Runs the searches in parallel, with the same result.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a rover and generation: rover, scenario, in_class, generations, mass_kg, ceiling_kg, feasible
+        (the rover itself on that mission), front_designs, distance (to the nearest design of the merged
+        fronts), distance_worst_seed (to the nearest of the worst single search), dominated (some front design
+        is no worse in range, mass and slope capability and better in one), and `nearest`, the design.
+    """
+    wanted = sorted({int(check("generations", g, 1, whole=True, scalar=True)) for g in generations})
+    targets, seeds = [_Target.of(name) for name in rovers], list(seeds)
+    jobs = [(target.name, population, wanted, seed) for target in targets for seed in seeds]
+    searches = list((map if executor is None else executor.map)(_search, *zip(*jobs)))
+    return pd.DataFrame([
+        _found(target, generation, [search[g] for search in searches[i * len(seeds):(i + 1) * len(seeds)]])
+        for i, target in enumerate(targets) for g, generation in enumerate(wanted)])
+
+
+def _search(rover, population, generations, seed):
+    """Fronts of one rover's search at some generations; runs in any process."""
+    target, fronts = _Target.of(rover), []
+
+    def look(progress):
+        if progress.generation in generations:
+            fronts.append(dataclasses.replace(progress.front(), objective_history=()))
+
+    constraints = target.scenario.study.constraints + (("total_mass_kg", "<=", target.ceiling_kg),)
+    search(target.scenario, population, generations[-1], seed, constraints=constraints, on_generation=look)
+    return fronts
+
+
+def _found(target, generation, fronts):
+    """The row of one rover at one generation."""
+    fronts, own_row = [front for front in fronts if len(front)], catalog.rover_row(target.name)
+    row = dict(rover=target.name, scenario=target.scenario.name, in_class=own_row["in_class"] == "True",
+               generations=generation, mass_kg=target.performance.total_mass_kg, ceiling_kg=target.ceiling_kg,
+               feasible=target.performance.feasible, front_designs=sum(map(len, fronts)), distance=np.nan,
+               distance_worst_seed=np.nan, dominated=False, nearest=None)
+    if fronts:
+        nearest = [target.distances(front.designs).min() for front in fronts]
+        best = fronts[int(np.argmin(nearest))].designs
+        own = _minimised(target.performance, fronts[0].study.objectives)
+        theirs = np.concatenate([_minimised(front.performance, front.study.objectives) for front in fronts])
+        row |= dict(distance=min(nearest), distance_worst_seed=max(nearest),
+                    dominated=bool(((theirs <= own).all(1) & (theirs < own).any(1)).any()),
+                    nearest=best[int(np.argmin(target.distances(best)))])
+    return row
+
+
+def rediscovery_baselines(found, count=20000, seed=0):
+    """What distances chance gives, for the rovers of a rediscovery check.
+
+    Parameters
+    ----------
+    found : pandas.DataFrame
+        From `rediscovery`, one row a rover: its number of front designs sets how many chances chance gets.
+    count : int
+        Random designs a rover.
+    seed : int
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a rover: rover, random_pair (mean distance of two random points), feasible_fraction (share of
+        random designs that are feasible on its mission), feasible_pair (mean distance of two of those),
+        centroid (distance of the rover to their centroid), nearest_feasible (mean distance of the nearest of
+        as many random feasible designs as the front has), nearest_capped and nearest_capped_low (the same
+        under the rover's mass ceiling, and its 5 % quantile), capped_designs (how many random designs met
+        it).
+    """
+    random, rows = np.random.default_rng(seed), []
+    count = int(check("count", count, 100, whole=True, scalar=True))
+    points = random_designs(count, seed=seed)
+    cube = unit_cube(points)
+    for row in found.itertuples():
+        target = _Target.of(row.rover)
+        feasible = evaluate(points, target.scenario).feasible
+        capped = _lighter_than(target, count, seed + 1)
+        capped = capped[evaluate(capped, target.scenario).feasible]
+        chances = max(row.front_designs, 1)
+        near = {name: _nearest(target.distances(designs), chances, random) for name, designs in
+                dict(feasible=points[feasible], capped=capped).items()}
+        rows.append(dict(
+            rover=row.rover, random_pair=_pair(cube, random), feasible_fraction=feasible.mean(),
+            feasible_pair=_pair(cube[feasible], random),
+            centroid=np.linalg.norm(cube[feasible].mean(0) - unit_cube(target.design)[0]),
+            nearest_feasible=near["feasible"].mean(), nearest_capped=near["capped"].mean(),
+            nearest_capped_low=np.quantile(near["capped"], 0.05), capped_designs=len(capped)))
+    return pd.DataFrame(rows)
+
+
+def _pair(cube, random, pairs=200_000):
+    """Mean distance of two different random points of a set."""
+    i = random.integers(len(cube), size=pairs)
+    j = (i + random.integers(1, len(cube), size=pairs)) % len(cube)
+    return np.linalg.norm(cube[i] - cube[j], axis=1).mean()
+
+
+def _nearest(distances, chances, random, trials=2000):
+    """Distance of the nearest of `chances` random picks, in many trials."""
+    return distances[random.integers(len(distances), size=(trials, chances))].min(1)
+
+
+def _lighter_than(target, count, seed):
+    """Uniform random designs below a rover's mass ceiling.
+
+    Total mass rises with every variable. Each one is therefore bounded by what it may reach with all others
+    at their least; what is drawn in that smaller box and is light enough is uniform in the whole light part
+    of the space.
+    """
+    low = {name: v.low for name, v in DESIGN_SPACE.items()}
+    bounds = {}
+    for name in ("wheel_radius_m", "wheel_width_m", "chassis_mass_kg", "solar_area_m2", "battery_capacity_wh",
+                 "avionics_power_w", "peak_wheel_torque_nm"):
+        values = np.linspace(DESIGN_SPACE[name].low, DESIGN_SPACE[name].high, 1001)
+        mass = mass_of(Design(**low | {name: values}), target.scenario, Model()).total_kg
+        light = np.flatnonzero(mass <= target.ceiling_kg)
+        highest = values[min(light[-1] + 1, len(values) - 1)] if light.size else low[name]
+        bounds[name] = (DESIGN_SPACE[name].low, float(highest))
+    six = mass_of(Design(**low | {"wheel_count": 6}), target.scenario, Model()).total_kg <= target.ceiling_kg
+    bounds["wheel_count"] = (4, 6 if six else 4)
+    designs = random_designs(20 * count, seed, bounds)
+    return designs[mass_of(designs, target.scenario, Model()).total_kg <= target.ceiling_kg][:count]
