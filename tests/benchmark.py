@@ -1,9 +1,9 @@
 """Speed, memory and import time of the evaluator on one core: `python tests/benchmark.py` prints the tables.
 
-The yardstick is the scalar transcription of the paper beside this file: it does the work of the original release
-(100 points on the contact arc, Brent's method, an hourly loop) and costs about as much. Ratios are taken within one
-run, so that they compare the engines and not two machines; times are processor times, so that other programs on
-the machine disturb them less. Nothing here is a test.
+The yardstick is the scalar transcription of the paper beside this file: it does the work of the original
+release (100 points on the contact arc, Brent's method, an hourly loop) and costs about as much. Ratios are
+taken within one run, so that they compare the engines and not two machines; times are processor times, which
+other programs on the machine disturb less. Nothing here is a test.
 """
 import os
 
@@ -50,11 +50,12 @@ def speed():
             rdk.evaluate(rdk.random_designs(1, seed=0), scenario)           # warm up
             for i in range(repetitions):                 # turn about, so that both see the same machine
                 population = rdk.random_designs(size, seed=i)
-                scalar_ms = [milliseconds(scalar.evaluate, rdk.random_designs(1, seed=1000 * i + k)[0].numbers(), mission)
-                             for k in range(max(1, 12 // repetitions))]
+                others = rdk.random_designs(max(1, 12 // repetitions), seed=1000 + i)
+                scalar_ms = [milliseconds(scalar.evaluate, other.numbers(), mission) for other in others]
                 if size == 1:
                     population = population[0]
-                times.append((milliseconds(rdk.evaluate, population, scenario) / size, statistics.median(scalar_ms)))
+                times.append((milliseconds(rdk.evaluate, population, scenario) / size,
+                              statistics.median(scalar_ms)))
             ours, theirs = (statistics.median(column) for column in zip(*times))
             ratios.append(theirs / ours)
             print(f"{size:>10,} {name:28}{ours:>12.4f}{theirs:>12.2f}{ratios[-1]:>9.0f}")
@@ -84,17 +85,20 @@ def counted(function, counts, key, lanes):
 
 
 def kernel_evaluations():
-    """Wheel-soil solves and contact integrals a design, here and in the transcription, beside the paper's count."""
+    """Wheel-soil solves and contact integrals a design, here and in the transcription."""
     print("\nwheel-soil solves and contact integrals a design (paper: 19 solves)\n"
           f"{'scenario':28}{'solves':>9}{'integrals':>11}{'scalar solves':>15}{'scalar integrals':>18}")
     for name in SCENARIOS:
         scenario, population, few = rdk.scenario(name), rdk.random_designs(2_000, seed=2), 20
         counts = dict.fromkeys(("solves", "integrals", "scalar solves", "scalar integrals"), 0)
         kept = {(module, function): getattr(module, function) for module, function in (
-            (contact, "forces"), (contact, "entry_angle"), (contact, "_newton_balance"), (scalar, "wheel_forces"),
+            (contact, "forces"), (contact, "entry_angle"), (contact, "_newton_balance"),
+            (scalar, "wheel_forces"),
             (scalar, "contact_integrals"))}
-        wrappers = {"forces": ("integrals", lambda a: a[0].size), "entry_angle": ("solves", lambda a: a[1].size),
-                    "_newton_balance": ("solves", lambda a: a[1].size), "wheel_forces": ("scalar solves", lambda a: 1),
+        wrappers = {"forces": ("integrals", lambda a: a[0].size),
+                    "entry_angle": ("solves", lambda a: a[1].size),
+                    "_newton_balance": ("solves", lambda a: a[1].size),
+                    "wheel_forces": ("scalar solves", lambda a: 1),
                     "contact_integrals": ("scalar integrals", lambda a: 1)}
         try:
             for (module, function), original in kept.items():
@@ -117,7 +121,8 @@ def fixed_and_hourly():
     for label, days, repetitions, run, size in (
             ("one design", (1, 14, 60, 180, 365), 25, lambda s: rdk.evaluate(design, s), 1),
             ("each of 2,000 designs", (1, 14, 60, 180, 365), 1, lambda s: rdk.evaluate(population, s), 2_000),
-            ("scalar transcription", (1, 60, 365), 3, lambda s: scalar.evaluate(design.numbers(), transcribed(s)), 1)):
+            ("scalar transcription", (1, 60, 365), 3,
+             lambda s: scalar.evaluate(design.numbers(), transcribed(s)), 1)):
         costs = []
         for length in days:
             mission = dataclasses.replace(scenario, duration_earth_days=length)
@@ -129,9 +134,9 @@ def fixed_and_hourly():
 def import_time():
     """Median processor time to import rdk in a fresh interpreter, and of numpy alone."""
     for module in "numpy", "rdk":
-        code = f"import time; start = time.process_time(); import {module}; print(time.process_time() - start)"
-        seconds = statistics.median(float(subprocess.check_output([sys.executable, "-c", code])) for _ in range(5))
-        print(f"import {module}: {seconds:.2f} s")
+        code = f"import time; t = time.process_time(); import {module}; print(time.process_time() - t)"
+        runs = [float(subprocess.check_output([sys.executable, "-c", code])) for _ in range(5)]
+        print(f"import {module}: {statistics.median(runs):.2f} s")
 
 
 if __name__ == "__main__":

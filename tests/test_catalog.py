@@ -10,7 +10,8 @@ import rdk
 from rdk import catalog
 from rdk.catalog import DATA
 
-READERS = {"soils.csv": lambda: rdk.soil("apollo-nominal"), "scenarios.csv": lambda: rdk.scenario("mare_micro"),
+READERS = {"soils.csv": lambda: rdk.soil("apollo-nominal"),
+           "scenarios.csv": lambda: rdk.scenario("mare_micro"),
            "rovers.csv": lambda: rdk.rover("Rashid-1")}
 
 
@@ -24,7 +25,7 @@ def folder(tmp_path, monkeypatch):
     catalog._rows.cache_clear()
 
 
-# ---- what it holds --------------------------------------------------------------------------------------------
+# ---- what it holds -----------------------------------------------------------------------------------------
 
 def test_every_name_can_be_read():
     assert len(rdk.soil_names()) == 11 and len(rdk.scenario_names()) == 14 and len(rdk.rover_names()) == 6
@@ -33,7 +34,8 @@ def test_every_name_can_be_read():
     assert all(isinstance(rdk.rover(name), rdk.Design) for name in rdk.rover_names())
     assert rdk.scenario_names("canonical") == ("equatorial_mare_traverse", "polar_prospecting",
                                                "highland_slope_capability", "crater_rim_survey")
-    assert set(rdk.rover_names()) == {"Pragyan", "Yutu-2", "MoonRanger", "Rashid-1", "Tenacious", "CADRE-unit"}
+    assert set(rdk.rover_names()) == {"Pragyan", "Yutu-2", "MoonRanger", "Rashid-1", "Tenacious",
+                                      "CADRE-unit"}
 
 
 def test_values_are_those_of_the_files():
@@ -71,16 +73,17 @@ def test_table_is_the_file_as_a_frame():
     (lambda: rdk.soil(""), "no soil ''; choose from fjs-1"),
     (lambda: rdk.soil(None), "no soil None; choose from fjs-1"),
     (lambda: rdk.scenario("mare"), "no scenario 'mare'; choose from equatorial_mare_traverse, "),
-    (lambda: rdk.rover("Sojourner"), "no rover 'Sojourner'; choose from Pragyan, Yutu-2, "),    # in the mass check only
+    (lambda: rdk.rover("Sojourner"), "no rover 'Sojourner'; choose from Pragyan, "),     # mass check only
     (lambda: rdk.rover("rashid-1"), "no rover 'rashid-1'; choose from .*Rashid-1"),
-    (lambda: rdk.scenario_names("arctic"), "no kind 'arctic' of scenario; choose from canonical, class-generic, "),
+    (lambda: rdk.scenario_names("arctic"),
+     "no kind 'arctic' of scenario; choose from canonical, class-generic, "),
 ], ids=str)
 def test_unknown_names_are_answered_with_the_known_ones(call, message):
     with pytest.raises(ValueError, match=message):
         call()
 
 
-# ---- missing and damaged files --------------------------------------------------------------------------------
+# ---- missing and damaged files -----------------------------------------------------------------------------
 
 @pytest.mark.parametrize("name", READERS)
 def test_a_missing_file_is_named_with_its_folder_and_a_remedy(folder, name):
@@ -129,7 +132,8 @@ DAMAGE = [
     ("soils.csv", b"version https://git-lfs\noid sha256:0\n", "soils.csv is damaged: no column 'soil'"),
     ("soils.csv", b'soil,"n\na,b\n', "soils.csv is damaged: unexpected end of data"),
     ("rovers.csv", lambda rows: rows[5].pop(), "rovers.csv is damaged: line 6 has 21 values, the header 22"),
-    ("scenarios.csv", lambda rows: rows[3].append("1"), "scenarios.csv is damaged: line 4 has 19 values, the header 18"),
+    ("scenarios.csv", lambda rows: rows[3].append("1"),
+     "scenarios.csv is damaged: line 4 has 19 values, the header 18"),
     ("soils.csv", renamed("soil"), "soils.csv is damaged: no column 'soil'; its first line is 'other,"),
     ("scenarios.csv", renamed("kind"), "scenarios.csv is damaged: no column 'kind'"),
     ("rovers.csv", renamed("use"), "rovers.csv is damaged: no column 'use'"),
@@ -139,7 +143,7 @@ DAMAGE = [
     ("soils.csv", cell("apollo-nominal", "friction_angle_deg", ""),
      "soils.csv is damaged: friction_angle_deg of 'apollo-nominal' is '', not a number"),
     ("soils.csv", cell("apollo-nominal", "friction_angle_deg", "460"),
-     "soils.csv is damaged: row of 'apollo-nominal': friction_angle_deg must be .* below 90 and finite; got 460"),
+     "soils.csv is damaged: row of 'apollo-nominal': friction_angle_deg must be .* below 90.*; got 460"),
     ("soils.csv", cell("apollo-nominal", "shear_modulus_mm", "nan"),
      "soils.csv is damaged: row of 'apollo-nominal': shear_modulus_mm must be positive and finite; got nan"),
     ("scenarios.csv", cell("mare_micro", "duty_cycle", "10"),

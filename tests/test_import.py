@@ -8,7 +8,8 @@ HEAVY = ("pymoo", "matplotlib", "ipywidgets", "IPython", "pandas", "scipy.optimi
 
 def fresh(code):
     """Standard output of a fresh interpreter."""
-    run = subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, timeout=120)
+    run = subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True,
+                         timeout=120)
     assert run.returncode == 0, run.stderr
     assert run.stderr == ""
     return run.stdout

@@ -21,7 +21,8 @@ def flown(name):
     row = next(row for row in catalog.rows("flown.csv") if row["rover"] == name)
     model = rdk.Model(
         enclosure_area_base_m2=float(row["enclosure_area_m2"]), enclosure_area_coefficient_m2=0.0,
-        enclosure_absorptivity=float(row["absorptivity"]), hibernation_power_w=float(row["hibernation_power_w"]),
+        enclosure_absorptivity=float(row["absorptivity"]),
+        hibernation_power_w=float(row["hibernation_power_w"]),
         radioisotope_heater_power_w=float(row["rhu_power_w"]),
         operating_temperature_max_c=float(row["max_operating_temp_c"]))
     scenario = dataclasses.replace(rdk.scenario(row["mission"]), panel_tilt_deg=0.0)
@@ -72,7 +73,8 @@ def test_limits():
     assert thermal.node_temperature(0.0, 0.3, 250.0) == pytest.approx(-23.15, abs=1e-12)
     hot = 273.15 + thermal.node_temperature(1e6, 0.3, 100.0, emissivity=0.5)
     assert hot == pytest.approx((1e6 / (0.5 * scipy.constants.Stefan_Boltzmann * 0.3)) ** 0.25, rel=1e-5)
-    assert thermal.enclosure_area(0.0) == 0.05 and thermal.enclosure_area(8.0) == pytest.approx(0.13, rel=1e-15)
+    assert thermal.enclosure_area(0.0) == 0.05
+    assert thermal.enclosure_area(8.0) == pytest.approx(0.13, rel=1e-15)
     noon = thermal.absorbed_sunlight(np.array([-90.0, -60.0, 0.0, 60.0, 90.0]), 0.2)
     np.testing.assert_allclose(noon, 0.3 * 1361 * 0.25 * 0.2 * np.array([0, 0.5, 1, 0.5, 0]), atol=1e-12)
     assert np.all(noon >= 0)
@@ -89,8 +91,8 @@ def test_evaluate_agrees_with_the_transcription():
         scenario = rdk.scenario(name)
         model = rdk.Model(radioisotope_heater_power_w=7.0)
         found = rdk.evaluate(designs, scenario, model)
-        expected = [scalar.enclosure_temperatures_c(d.numbers(), vars(scenario), scalar.MODEL | {"rhu_w": 7.0})
-                    for d in designs]
+        constants = scalar.MODEL | {"rhu_w": 7.0}
+        expected = [scalar.enclosure_temperatures_c(d.numbers(), vars(scenario), constants) for d in designs]
         # the fourth root taken in two ways: rounding of 300 K
         found = [found.hot_temperature_c, found.cold_temperature_c]
         np.testing.assert_allclose(np.transpose(expected), found, rtol=1e-11, atol=1e-9)
