@@ -84,10 +84,11 @@ def mass_breakdown(*, wheel_radius_m, wheel_width_m, grouser_height_m, grouser_c
     per_wheel = (wheel_areal_density_kg_m2 * 2 * np.pi * wheel_radius_m * wheel_width_m          # rim, hub, spokes
                  + grouser_count * wheel_width_m * grouser_height_m * grouser_thickness_m * grouser_density_kg_m3)
     wheels = wheel_count * per_wheel                                                             # eq. mass-wheels
+    # eq. mass-motors
     motors = wheel_count * (motor_base_mass_kg + motor_mass_per_torque_kg_nm * peak_wheel_torque_nm)
     array = solar_areal_density_kg_m2 * solar_area_m2
     battery = battery_capacity_wh / battery_specific_energy_wh_kg
-    avionics = avionics_base_mass_kg + avionics_mass_per_power_kg_w * avionics_power_w
+    avionics = avionics_base_mass_kg + avionics_mass_per_power_kg_w * avionics_power_w   # eq. mass-power-avionics
     rocker_bogie = np.equal(wheel_count, 6)
     linkage = (linkage_base_mass_kg + linkage_chassis_fraction * chassis_mass_kg) * rocker_bogie
     subsystems = chassis_mass_kg + wheels + motors + array + battery + avionics + linkage        # eq. mass-subsystems

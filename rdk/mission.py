@@ -254,7 +254,7 @@ def cruise_speed(average_solar_power_w, base_load_w, wheel_count, wheel_torque_n
     surplus = np.maximum(np.asarray(average_solar_power_w) - base_load_w, 0.0)
     with np.errstate(all="ignore"):
         free = np.where(surplus > 0, np.inf, 0.0)        # no torque or no driving: nothing limits but the hub
-        paid_for = np.asarray(duty_cycle) * torque
+        paid_for = np.asarray(duty_cycle) * torque       # eq. energy-balance-speed
         energy_speed = np.where(paid_for > 0, surplus * rolling_radius * drivetrain_efficiency / paid_for, free)
         speed = np.minimum(energy_speed, hub_no_load_speed_rad_s * rolling_radius)
         power_w = np.where(np.isfinite(speed), torque * speed / rolling_radius / drivetrain_efficiency, 0.0)

@@ -130,7 +130,7 @@ def wheel_forces(wheel, soil, vertical_load_n, slip, *, transition_c1=0.4, trans
     vertical_load_n : float or ndarray
         Load on the wheel in newtons, positive.
     slip : float or ndarray
-        s = 1 - v / (omega r), from -1 to 1; negative when braking.
+        s = 1 - v / (omega r), eq. slip, from -1 to 1; negative when braking.
     transition_c1, transition_c2 : float or ndarray
         theta_m = (c_1 + c_2 |s|) theta_1 (Wong & Reece 1967).
     grouser_lift_cap : float or ndarray
@@ -177,9 +177,9 @@ def slip_balance(wheel, soil, vertical_load_n, required_pull_n, *, slip_min=SLIP
                  transition_c1=0.4, transition_c2=0.2, grouser_lift_cap=0.6, shear_scale=1.0):
     """The slip at which the drawbar pull equals the pull that the slope demands.
 
-    Two equations, vertical load and pull, in two unknowns, entry angle and slip. Where the pull exceeds the
-    demand at both ends of the slip interval, slip is 0; where it falls short at both ends, the wheel is
-    stalled and slip is `slip_max`.
+    Two equations, vertical load and pull (eq. slip-balance), in two unknowns, entry angle and slip. Where the
+    pull exceeds the demand at both ends of the slip interval, slip is 0; where it falls short at both ends,
+    the wheel is stalled and slip is `slip_max`.
 
     Parameters
     ----------
@@ -303,7 +303,7 @@ def climb(wheel, soil, weight_n, slope_deg, *, slip_min=SLIP_MIN, slip_max=SLIP_
 
     def solve(lanes):
         patch, (weight, slope, low, high, slip, limit) = lanes[:9], lanes[9:]
-        load, count = weight * np.cos(slope), weight.size
+        load, count = weight * np.cos(slope), weight.size                # eq. required-dp
         # both entry angles in one batch: a batch twice as long costs less than two batches
         theta = contact.entry_angle(np.tile(patch, 2), np.concatenate([high, slip]), np.concatenate([load, weight]),
                              np.repeat([0.0, 1.0], count))

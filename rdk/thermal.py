@@ -19,7 +19,7 @@ def enclosure_area(chassis_mass_kg, base_m2=0.05, coefficient_m2=0.02):
     chassis_mass_kg : float or ndarray
         m_c in kg.
     base_m2, coefficient_m2 : float or ndarray
-        A_r = base + coefficient * m_c^(2/3), in m2 with m_c in kg.
+        A_r = base + coefficient * m_c^(2/3), in m2 with the mass in kilograms.
 
     Returns
     -------
