@@ -108,15 +108,17 @@ def entry_angle(patch, s, target, with_pull):
         held = np.where(load > 0, held, 0.0)
         low = np.where(held < target, theta, low)
         high = np.where(held < target, high, theta)
-        step = held / slope * np.log(target / held)
+        miss = np.log(target / held)
+        step = held / slope * miss
         newton = theta * np.exp(np.clip(step, -1, 1))
-        done = np.abs(step) < _STEP_DONE
+        done = (np.abs(step) < _STEP_DONE) & (np.abs(miss) < 10 * _STEP_DONE)
         inside = (newton > low) & (newton < high)
         # beyond the far end: look there once, since a wheel that does not hold there is buried
         new = np.where(inside, newton, np.where((newton >= high) & (high == _HALF_PI) & (low < _HALF_PI), _HALF_PI,
                                                 (low + high) / 2))
-        gone = low == _HALF_PI                           # not carried at 90 degrees: buried
-        done = (done | (high - low < 1e-14)) & ~gone
+        shut = high - low < 1e-14
+        gone = (low == _HALF_PI) | (shut & (high == _HALF_PI))             # not carried below 90 degrees: buried
+        done = (done | shut) & ~gone
         if done.any() or gone.any():
             result[lane[done]] = np.where(inside, newton, theta)[done]
             keep = ~(done | gone)
