@@ -415,6 +415,45 @@ def test_a_wheel_that_the_soil_cannot_carry_is_buried():
     assert np.isnan(near.sinkage_m).tolist() == [False, True] and near.entry_angle_rad[0] > 1.5
 
 
+def test_without_normal_stress_the_wheel_is_buried():
+    # theta_m = theta_1 leaves no front arc, and the rear one mirrors nothing: only cohesion is left to carry
+    forces = wheel_forces(WHEEL, MARE, 8.0, np.array([-0.9, 0.3, 1.0]), transition_c1=1.0, transition_c2=0.0)
+    assert all(np.isnan(value).all() for value in forces)
+    assert slip_balance(WHEEL, MARE, 8.0, 1.0, transition_c1=1.0, transition_c2=0.0).buried
+
+
+def test_solvers_stand_extreme_soils_and_loads():
+    """What a solver returns it must have solved, however absurd the wheel: cohesion of 1e4 loads, steep braking."""
+    rng = np.random.default_rng(7)
+    count = 5000
+
+    def spread(low, high):
+        return 10 ** rng.uniform(np.log10(low), np.log10(high), count)
+
+    soil = Soil(rng.uniform(0.3, 2.5, count), rng.choice([0, 5, -20], count) * rng.uniform(0, 1, count),
+                spread(10, 1e5), rng.choice([0, 1], count) * spread(0.01, 50), rng.uniform(0, 80, count),
+                spread(0.1, 200))
+    wheel = Wheel(spread(0.01, 1), spread(0.01, 0.5), rng.uniform(0, 0.05, count), rng.integers(0, 60, count))
+    load, slip = spread(1e-3, 1e4), rng.uniform(-1, 1, count)
+    pull = load * np.tan(np.radians(rng.uniform(-60, 60, count)))
+    lanes, _ = rdk.terramechanics._lanes(wheel, soil, 0.4, 0.2, 0.6, 1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = wheel_forces(wheel, soil, load, slip)
+        balance, capability = slip_balance(wheel, soil, load, pull), slope_capability(wheel, soil, load)
+        low, high = (wheel_forces(wheel, soil, load, end).drawbar_pull_n for end in (-0.9, 0.95))
+    solved = np.isfinite(found.entry_angle_rad)
+    carried = contact.forces(found.entry_angle_rad[solved], slip[solved], lanes[:, solved])[0]
+    np.testing.assert_allclose(carried, load[solved], rtol=1e-4)                   # 2e-5 was the worst of 60,000
+    assert 0.5 < solved.mean() < 1
+    inner = ~balance.stalled & ~((low > pull) & (high > pull))
+    carried, pulled, _ = contact.forces(balance.entry_angle_rad[inner], balance.slip[inner], lanes[:, inner])
+    np.testing.assert_allclose(carried, load[inner], rtol=1e-3)
+    np.testing.assert_allclose(pulled / load[inner], pull[inner] / load[inner], atol=1e-3)
+    assert inner.sum() > 500 and np.array_equal(np.isnan(balance.slip), balance.buried)
+    assert np.all(balance.stalled[balance.buried]) and np.all((capability >= 0) & (capability <= 35))
+
+
 def test_a_negative_stiffness_carries_nothing():
     firm = rdk.soil("kls-1")                             # k_c / b + k_phi turns negative below b = 12.3 mm
     width = np.array([0.012, 0.013])
