@@ -15,6 +15,8 @@ from .design import Design
 
 EXERCISES = {}
 """Every exercise by its number, filled by `exercises`."""
+UNITS = (1e3, 1e-3, 1e2, 1e-2, 1e6, 1e-6, 24.0, 1 / 24, 60.0, 1 / 60, 3.6, 1 / 3.6, np.pi / 180, 180 / np.pi, -1.0)
+"""Factors by which an answer in another unit is off."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -113,8 +115,12 @@ def check(number, answer):
         return Verdict(False, "Not yet. " + missing) if missing else Verdict(True, "Right: it does what was asked.")
     if _agree(answer, task.expected, task.within):
         return Verdict(True, "Right.")
-    explained = (hint for hint, wrong in task.mistakes.items() if _agree(answer, wrong(), task.within))
-    return Verdict(False, "Not yet. " + next(explained, task.hint))
+    for hint, wrong in task.mistakes.items():
+        if _agree(answer, wrong(), task.within):
+            return Verdict(False, "Not yet. " + hint)
+    if isinstance(answer, np.ndarray) and any(_agree(answer * unit, task.expected, task.within) for unit in UNITS):
+        return Verdict(False, "Not yet. The digits are right: look at the unit that the exercise asks for, or at the sign.")
+    return Verdict(False, "Not yet. " + task.hint)
 
 
 def _of_kind(task, answer):
@@ -150,7 +156,7 @@ def _of_kind(task, answer):
         raise ValueError(asks + got)
     if not np.isfinite(given).all():
         raise ValueError(f"{asks}, finite{got}")
-    return given
+    return np.asarray(given, float)
 
 
 def _agree(answer, expected, within):
