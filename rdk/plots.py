@@ -1368,7 +1368,8 @@ def ranks_and_crowding(mass_kg, slope_deg, rank, crowding, chosen):
     (x0, x1), (y0, y1) = x[[at - 1, at + 1]], y[[at - 1, at + 1]]
     right.add_patch(plt.Rectangle((x0, y0), x1 - x0, y1 - y0, fill=False, edgecolor=ORANGE, ls="--", lw=1.5))
     for i, value in enumerate(crowding[order]):
-        right.annotate("∞" if np.isinf(value) else f"{value:.2f}", (x[i], y[i]), (-7, 6), ha="right",
+        offset, side = ((-6, 5), "right") if i % 2 == 0 else ((6, -13), "left")      # neighbours must not meet
+        right.annotate("∞" if np.isinf(value) else f"{value:.2f}", (x[i], y[i]), offset, ha=side,
                        textcoords="offset points", fontsize=9)
     right.margins(0.22)
     for panel, title in (ax, "ranks"), (right, "crowding distances of rank 1"):
@@ -1449,8 +1450,7 @@ def pareto_fronts(fronts, published=None):
         if published and title in published:
             m0, m1, r0, r1 = published[title]
             ax.add_patch(plt.Rectangle((m0, r0), m1 - m0, r1 - r0, fill=False, ls=":", edgecolor=BLACK))
-        ax.set(xlabel="total mass (kg)", ylabel="range (km)", xlim=(0, None), ylim=(0, None))
-        ax.margins(0.06)
+        ax.set(xlabel="total mass (kg)", ylabel="range (km)", xlim=(0, None), ylim=(0, 1.08 * p.range_km.max()))
         ax.set_title(title, fontsize=10)
     words = ("below 20°", "20° to 30°", "30° to 34°", "above 34°")
     style = dict(color=BLACK, markerfacecolor="white", ls="")
@@ -1663,8 +1663,10 @@ def capability_against_width(width_mm, panels):
     """
     figure, axes = _axes(1, len(panels), figsize=(4.2 * len(panels), 3.6), sharey=True, squeeze=False)
     for ax, (title, series) in zip(axes[0], panels.items()):
-        _lines(ax, width_mm, series, "wheel width (mm)", "slope capability (deg)", legend=ax is axes[0, 0])
+        _lines(ax, width_mm, series, "wheel width (mm)", "slope capability (deg)", legend=False)
         ax.set_title(title, fontsize=10)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4, fontsize=9,
+                  frameon=False)
     return figure
 
 

@@ -90,7 +90,7 @@ def _place(designs, name):
     return (getattr(designs, name) - variable.low) / (variable.high - variable.low)
 
 
-def over_generations(scenarios, seeds, generations, **options):
+def over_generations(scenarios, seeds, generations, executor=None, **options):
     """Front statistics at several generations of the same searches.
 
     Parameters
@@ -99,6 +99,8 @@ def over_generations(scenarios, seeds, generations, **options):
     seeds : sequence of int
     generations : sequence of int
         Where to look; each search runs to the last of them.
+    executor : concurrent.futures.Executor, optional
+        Runs the searches in parallel, with the same result.
     **options
         Passed to `pareto_front`, such as `population`.
 
@@ -107,16 +109,22 @@ def over_generations(scenarios, seeds, generations, **options):
     pandas.DataFrame
         Rows of `front_statistics`; the front at generation g is that of a search of g generations.
     """
-    wanted, fronts = {int(check("generations", g, 1, whole=True, scalar=True)) for g in generations}, []
+    wanted = sorted({int(check("generations", g, 1, whole=True, scalar=True)) for g in generations})
+    jobs = [(scenario, wanted, dict(options, seed=seed)) for scenario in scenarios for seed in seeds]
+    searches = (map if executor is None else executor.map)(_looks, *zip(*jobs))
+    return front_statistics(front for fronts in searches for front in fronts)
+
+
+def _looks(scenario, generations, options):
+    """The fronts of one search at some generations; runs in any process."""
+    fronts = []
 
     def look(progress):
-        if progress.generation in wanted:
+        if progress.generation in generations:
             fronts.append(progress.front())
 
-    for scenario in scenarios:
-        for seed in seeds:
-            search(scenario, generations=max(wanted), seed=seed, on_generation=look, **options)
-    return front_statistics(fronts)
+    search(scenario, generations=generations[-1], on_generation=look, **options)
+    return fronts
 
 
 def crossover(statistics):
@@ -402,6 +410,10 @@ class _Target:
         performance = evaluate(design, scenario)
         return cls(name, scenario, design, performance, 1.10 * performance.total_mass_kg)
 
+    @property
+    def constraints(self):
+        return self.scenario.study.constraints + (("total_mass_kg", "<=", self.ceiling_kg),)
+
     def distances(self, designs):
         return np.linalg.norm(unit_cube(designs) - unit_cube(self.design), axis=1)
 
@@ -431,24 +443,12 @@ def rediscovery(rovers=tuple(REDISCOVERED), population=60, generations=(16,), se
     """
     wanted = sorted({int(check("generations", g, 1, whole=True, scalar=True)) for g in generations})
     targets, seeds = [_Target.of(name) for name in rovers], list(seeds)
-    jobs = [(target.name, population, wanted, seed) for target in targets for seed in seeds]
-    searches = list((map if executor is None else executor.map)(_search, *zip(*jobs)))
+    jobs = [(target.scenario, wanted, dict(population=population, seed=seed, constraints=target.constraints))
+            for target in targets for seed in seeds]
+    searches = list((map if executor is None else executor.map)(_looks, *zip(*jobs)))
     return pd.DataFrame([
-        _found(target, generation, [search[g] for search in searches[i * len(seeds):(i + 1) * len(seeds)]])
+        _found(target, generation, [fronts[g] for fronts in searches[i * len(seeds):(i + 1) * len(seeds)]])
         for i, target in enumerate(targets) for g, generation in enumerate(wanted)])
-
-
-def _search(rover, population, generations, seed):
-    """Fronts of one rover's search at some generations; runs in any process."""
-    target, fronts = _Target.of(rover), []
-
-    def look(progress):
-        if progress.generation in generations:
-            fronts.append(dataclasses.replace(progress.front(), objective_history=()))
-
-    constraints = target.scenario.study.constraints + (("total_mass_kg", "<=", target.ceiling_kg),)
-    search(target.scenario, population, generations[-1], seed, constraints=constraints, on_generation=look)
-    return fronts
 
 
 def _found(target, generation, fronts):
