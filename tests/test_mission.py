@@ -393,6 +393,13 @@ def test_throttling_by_hand():
     assert dawn.size and log.mobility_w[dawn[0]] < full
 
 
+def test_a_pack_that_starts_empty_is_throttled_from_the_first_step():
+    for start in 0.0, 0.1, 0.15:                         # below the floor is on the floor
+        log = rdk.evaluate(RASHID, MARE, rdk.Model(soc_initial=start)).log
+        assert log.throttled[0] and log.mobility_w[0] == log.distance_km[0] == 0 and log.soc[0] == 0.15
+    assert not rdk.evaluate(RASHID, MARE, rdk.Model(soc_initial=0.2)).log.throttled[0]
+
+
 def test_energy_balance_by_hand():
     """Trapezoidal over the samples with nothing recorded at the start; the last step may be shorter."""
     short = replace(POLAR, duration_earth_days=3.02)
