@@ -139,7 +139,7 @@ def test_lanes_agree_with_single_evaluations():
 
 
 def test_lanes_agree_across_the_edges_of_blocks():
-    population = rdk.random_designs(1100, seed=5)        # the kernel works on 512 lanes at once, the march on 390
+    population = rdk.random_designs(1100, seed=5)  # the kernel takes 512 lanes at once, the march 390
     scenario = replace(MARE, latitude_deg=np.linspace(-80, 80, 1100))
     found = rdk.evaluate(population, scenario)
     for i in (0, 389, 390, 391, 511, 512, 513, 779, 780, 1023, 1024, 1099):

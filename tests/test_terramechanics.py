@@ -349,7 +349,7 @@ def test_surplus_at_both_ends_of_a_driving_interval_needs_no_slip():
     demand = np.array([0.0, low - 1e-6, low + 1e-6, high + 1e-6])
     assert 0 < low < high
     found = slip_balance(WHEEL, MARE, 8.0, demand, slip_min=0.4)
-    np.testing.assert_allclose(found.slip, [0, 0, 0.4, 0.95], atol=1e-5)           # pull rises 1 N per 0.1 of slip
+    np.testing.assert_allclose(found.slip, [0, 0, 0.4, 0.95], atol=1e-5)  # pull rises 1 N per 0.1 of slip
     assert found.stalled.tolist() == [False, False, False, True]
 
 
