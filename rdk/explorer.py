@@ -377,10 +377,10 @@ class Explorer:
         value = {name: widget.value for name, widget in self.inputs.items()}
         limits = [("range_km", ">=", value["minimum_range_km"]), ("total_mass_kg", "<=", value["maximum_mass_kg"]),
                   ("slope_capability_deg", ">=", value["minimum_slope_deg"])]
-        loose = 0, self.inputs["maximum_mass_kg"].max
+        loose = {">=": 0, "<=": self.inputs["maximum_mass_kg"].max}
         return dict(population=value["population"], generations=value["generations"], seed=value["seed"],
                     objectives={name: value[goal] for name, goal in GOALS.items() if value[goal] != "ignore"},
-                    constraints=[limit for limit in limits if limit[2] not in loose])
+                    constraints=[limit for limit in limits if limit[2] != loose[limit[1]]])
 
     def optimise(self, wait=False):
         """Search in the background for the mission as it stands; with `wait`, return when the search has ended."""
@@ -486,7 +486,7 @@ class Explorer:
         note = f"{name} loaded"
         if design.shape:
             note += f": {len(design)} designs, listed under the inputs 'search'; the first is shown"
-            where = _plain(mission or self.scenario)
+            where = _plain(self.scenario if mission is None else mission)
             design = Design(**{n: np.clip(getattr(design, n), v.low, v.high) for n, v in DESIGN_SPACE.items()})
             self._searched, self._recipe = Front(design, evaluate(design, where, self.model), where, self.model, Study()), None
             self._offer(self._searched)

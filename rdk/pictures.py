@@ -84,6 +84,7 @@ def _axes(figure, build=None, margins=None):
         for artist in (*axes.lines, *axes.patches, *axes.texts, *axes.collections, axes.get_legend()):
             if artist is not None:
                 artist.remove()
+        axes.containers.clear()                          # they would keep every bar ever drawn
         axes.relim()
         axes.autoscale(True)
     return figure.axes if build else figure.axes[0]
