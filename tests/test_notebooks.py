@@ -185,3 +185,21 @@ def test_readme_lists_the_collection_with_its_minutes():
     readme = (REPO / "README.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| \[(\d\d_\w+)\]\(notebooks/\1\.ipynb\) \|.*\| (\d+) \|$", readme, re.M)
     assert rows == [(path.stem, stated_minutes(path)) for path in PATHS]
+
+
+def test_the_guide_lists_every_notebook_and_puts_each_on_the_course():
+    guide = (REPO / "notebooks/README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| \[(\d\d_\w+)\]\(\1\.ipynb\) \| (.+) \|([\d, ]*)\| (\d+) \|$", guide, re.M)
+    assert [(name, minutes) for name, _, _, minutes in rows] == [(path.stem, stated_minutes(path)) for path in PATHS]
+    for name, _, needs, _ in rows:                       # nothing is needed before it has been read
+        assert all(needed < name[:2] for needed in needs.strip().split(", ") if needed)
+    weeks = guide.partition("| Week |")[2].partition("\n\n")[0]
+    assert {target[:2] for target in re.findall(r"\((\d\d_\w+)\.ipynb\)", weeks)} == {path.name[:2] for path in PATHS}
+    for heading in ("Three paths", "What each notebook teaches", "For instructors"):
+        assert f"\n## {heading}\n" in guide
+    for word in ("An afternoon", "Six weeks", "reviewer's path", "How long", "How to grade", "Binder", "hub", "laptop"):
+        assert word in guide
+
+
+def test_the_title_asks_a_question(notebook):
+    assert notebook.cells[0].source.splitlines()[0].rstrip().endswith("?")

@@ -40,7 +40,8 @@ def test_ci_runs_the_readmes_test_command():
 
 
 def test_links_in_the_pages_resolve():
-    for page in REPO / "README.md", REPO / "data/README.md":
+    for name in "README.md", "data/README.md", "notebooks/README.md", "notebooks/glossary.md", "CONTRIBUTING.md":
+        page = REPO / name
         targets = re.findall(r"\]\(([^)\s#]+)\)", page.read_text(encoding="utf-8"))
         assert not [t for t in targets if not t.startswith("https:") and not (page.parent / t).exists()]
 
