@@ -7,13 +7,19 @@ from typing import NamedTuple
 import numpy as np
 
 from .design import DESIGN_SPACE, Model, Scenario
+from .mission import evaluate
+from .sampling import replaced
 from .terramechanics import Soil
 
 
+LEVERS = {"hub speed": "hub_no_load_speed_rad_s", "sun": "solar_area_m2", "battery": "battery_capacity_wh"}
+
+
 class Binding(NamedTuple):
-    """What limits a design: a key and one sentence."""
+    """What limits a design: a key, one sentence, and what more of each lever would bring."""
     key: str
     sentence: str
+    detail: str = ""
 
 
 class Limit(NamedTuple):
@@ -26,6 +32,9 @@ class Limit(NamedTuple):
 def binding(design, scenario, performance, model=Model()):
     """What binds a single design on its mission.
 
+    A design that drives, but not to the range limit, is bound by the lever of which 10 % more gains most range: hub
+    speed, array or battery, each with its effect on mass.
+
     Parameters
     ----------
     design, scenario, model
@@ -37,7 +46,7 @@ def binding(design, scenario, performance, model=Model()):
     -------
     Binding
         `key` is one of "soil", "traction", "torque", "duty", "sun", "range limit", "battery", "hub speed"; `sentence`
-        says it with numbers.
+        says it with numbers, `detail` compares the levers.
     """
     p, base = performance, design.avionics_power_w + scenario.payload_power_w
     if p.buried:
@@ -58,16 +67,29 @@ def binding(design, scenario, performance, model=Model()):
     if p.range_km >= scenario.traverse_limit_km:
         return Binding("range limit", f"The range limit binds: the rover reaches the mission's "
                                       f"{scenario.traverse_limit_km:g} km before the time is up.")
-    throttled = p.log.throttled.mean() if p.log is not None else 0.0
-    if throttled > 0.02:
-        return Binding("battery", f"The battery binds: it stands on its {100 * model.soc_floor:.0f} % floor and cuts "
-                                  f"driving in {100 * throttled:.0f} % of the hours; "
-                                  f"cruise speed is {100 * p.cruise_speed_m_s:.1f} cm/s.")
-    if p.hub_speed_limited:
-        return Binding("hub speed", f"Hub speed binds: sunlight would pay for {p.energy_balance_speed_m_s:.1f} m/s, the "
-                                    f"hub turns for {100 * p.cruise_speed_m_s:.1f} cm/s at most.")
-    return Binding("sun", f"Sunlight binds: what the array yields above avionics and payload pays for "
-                          f"{100 * p.cruise_speed_m_s:.1f} cm/s.")
+    gains = _gains(design, scenario, performance, model)
+    key = max(gains, key=gains.get)
+    detail = "10 % more hub speed gives {:.1f} % more range, array {:.1f} %, battery {:.1f} %".format(*gains.values())
+    if p.log is not None and p.log.throttled.any():
+        detail += f"; in {100 * p.log.throttled.mean():.0f} % of the hours the pack is empty and sunlight alone decides"
+    return Binding(key, {
+        "hub speed": f"Hub speed binds: sunlight would pay for {p.energy_balance_speed_m_s:.1f} m/s, the hub turns for "
+                     f"{100 * p.cruise_speed_m_s:.1f} cm/s at most.",
+        "sun": f"Sunlight binds: what the array yields above avionics and payload pays for "
+               f"{100 * p.cruise_speed_m_s:.1f} cm/s.",
+        "battery": f"The battery binds: it falls to {100 * p.minimum_soc:.0f} %, and driving stops."}[key], detail + ".")
+
+
+def _gains(design, scenario, performance, model):
+    """Percent more range from 10 % more of each lever; from 9 % less where more would leave the design space."""
+    now = {**design.numbers(), **model.numbers()}
+    factors = np.array([1.1 if name not in DESIGN_SPACE or now[name] * 1.1 <= DESIGN_SPACE[name].high else 1 / 1.1
+                        for name in LEVERS.values()])
+    lanes = {name: np.where(np.arange(len(LEVERS)) == i, factors[i], 1) * now[name]
+             for i, name in enumerate(LEVERS.values())}
+    found = evaluate(*replaced(design, dataclasses.replace(scenario, traverse_limit_km=np.inf), model, lanes)).range_km
+    ratio = np.maximum(found, 1e-9) / max(performance.range_km, 1e-9)
+    return dict(zip(LEVERS, np.minimum(100 * (np.where(factors > 1, ratio, 1 / ratio) - 1), 999.0).tolist()))
 
 
 def limits(design, scenario, performance, model=Model()):

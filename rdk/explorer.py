@@ -288,7 +288,8 @@ class Explorer:
         rows = "".join(f"<tr><th scope='row'>{title}</th><td><b>{value}</b></td><td>{span}</td><td>{limit}</td></tr>"
                        for title, value, span, limit in self._rows)
         head = "".join(f"<th scope='col'>{title}</th>" for title in ("read-out", "value", "90 % interval", "needed"))
-        return (f"<div role='status'><b>{html.escape(self.binding.sentence)}</b></div>"
+        sentence, detail = html.escape(self.binding.sentence), html.escape(self.binding.detail)
+        return (f"<div role='status'><b>{sentence}</b> {detail}</div>"
                 f"<table class='rdk-readout'><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>")
 
     def text(self):
@@ -296,7 +297,7 @@ class Explorer:
         if self.error:
             return self.error
         rows = [f"{title:24}{value:>11}   {span:22}{limit}".rstrip() for title, value, span, limit in self._rows]
-        return "\n".join([self.binding.sentence, "", *rows])
+        return "\n".join([self.binding.sentence, self.binding.detail, *rows])
 
     def _draw(self, view, design, scenario, result):
         figure = self._figures[view]
