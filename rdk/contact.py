@@ -13,7 +13,7 @@ BLOCK = 512                                              # lanes whose (2, NODES
 _x, _w = np.polynomial.legendre.leggauss(NODES)
 _U = (_x[:, None] + 1) / 2                               # nodes on [0, 1], as a column
 _W = _w / 2
-_STEP_DONE = 1e-5                                        # Newton converges quadratically: what is left is ~1e-10
+_STEP_DONE = 1e-5                                        # Newton converges quadratically: what is left is ~1e-9
 _HALF_PI = np.pi / 2
 
 
@@ -40,8 +40,8 @@ def forces(theta_1, s, patch, jacobian=False):
     a[0] += kappa
     np.multiply(1 - _U, kappa, out=a[1])
     theta = a * theta_1
-    sin, cos = np.sin(theta), np.cos(theta)
-    sin_1, cos_1 = np.sin(theta_1), np.cos(theta_1)
+    sin, sin_1 = np.sin(theta), np.sin(theta_1)
+    cos, cos_1 = np.sqrt(1 - sin * sin), np.sqrt(1 - sin_1 * sin_1)      # angles are 0 to 90 deg; twice as fast as cos
     depth = cos[0] - cos_1
     sigma = A * (depth if (n == 1).all() else depth ** n)                # eq. sigma
     arc, chord = theta_1 - theta, sin_1 - sin
@@ -86,15 +86,16 @@ def forces(theta_1, s, patch, jacobian=False):
 
 
 def entry_angle(patch, s, target, with_pull):
-    """Entry angle where F_z = target, or sqrt(F_z^2 + DP^2) = target in lanes with `with_pull` = 1; NaN if none.
+    """Entry angle where F_z = target, or sqrt(F_z^2 + DP^2) = target in lanes with `with_pull` = 1; F_z and DP there.
 
-    Newton in log-log coordinates: the load is close to a power of the entry angle, so few steps are needed.
+    NaN where there is none. Newton in log-log coordinates: the load is close to a power of the entry angle, so few
+    steps are needed. The forces come with the last one.
     """
     r, b, A, n = patch[:4]
     # Bekker's closed form for a smooth free-rolling wheel, z^(n + 1/2) = 3 W / ((3 - n) b k_eff sqrt(2 r)), starts it
     z = (3 * target / (np.maximum(3 - n, 0.5) * b * r * A * np.sqrt(2))) ** (2 / (2 * n + 1))
     theta = np.minimum(np.sqrt(2 * z), 1.2)
-    result = np.full(target.shape, np.nan)
+    result = np.full((3, target.size), np.nan)
     lane = np.flatnonzero(np.isfinite(theta))
     if lane.size < theta.size:
         patch, s, target, with_pull, theta = patch[:, lane], s[lane], target[lane], with_pull[lane], theta[lane]
@@ -120,7 +121,8 @@ def entry_angle(patch, s, target, with_pull):
         gone = (low == _HALF_PI) | (shut & (high == _HALF_PI))             # not carried below 90 degrees: buried
         done = (done | shut) & ~gone
         if done.any() or gone.any():
-            result[lane[done]] = np.where(inside, newton, theta)[done]
+            last = np.where(inside, newton - theta, 0.0)
+            result[:, lane[done]] = np.stack([theta + last, load + load_t * last, pull + pull_t * last])[:, done]
             keep = ~(done | gone)
             lane, patch, s, target, with_pull = lane[keep], patch[:, keep], s[keep], target[keep], with_pull[keep]
             low, high, new = low[keep], high[keep], new[keep]
@@ -128,9 +130,9 @@ def entry_angle(patch, s, target, with_pull):
     return result
 
 
-def slope(patch, slip, theta_1, limit_deg):
-    """Slope in degrees from the entry angle at the capability slip; 0 for buried lanes and where there is no pull."""
-    load, pull, _ = forces(theta_1, slip, patch)
+def slope(patch, slip, theta_1, load, pull, limit_deg):
+    """Slope in degrees from entry angle and forces at the capability slip; 0 for buried lanes and where nothing pulls."""
+    load = load.copy()
     deep = np.flatnonzero(theta_1 > 0.7)                 # might be buried on the flat, where the load is largest
     if deep.size:
         flat = forces(np.full(deep.size, _HALF_PI), slip[deep], patch[:, deep])[0]
@@ -148,14 +150,13 @@ def _brakes(patch, load, low):
     return forces(theta_limit, low, patch)[0] > load
 
 
-def slip_balance(patch, load, required, low, high, theta_high):
-    """Slip balance of flat lanes, given the entry angle at the high end of the slip interval."""
-    pull_high = forces(theta_high, high, patch)[1]
+def slip_balance(patch, load, required, low, high, theta_high, pull_high, guess):
+    """Slip balance of flat lanes, given angle and pull at the high end of the slip interval and a first guess of slip."""
     unsure = np.flatnonzero(~((required >= 0) & _brakes(patch, load, low)))
     surplus_low = np.zeros(load.shape, bool)
     if unsure.size:
-        theta_low = entry_angle(patch[:, unsure], low[unsure], load[unsure], np.zeros(unsure.size))
-        surplus_low[unsure] = forces(theta_low, low[unsure], patch[:, unsure])[1] > required[unsure]
+        _, _, pull_low = entry_angle(patch[:, unsure], low[unsure], load[unsure], np.zeros(unsure.size))
+        surplus_low[unsure] = pull_low > required[unsure]
     buried = np.isnan(pull_high)
     crossing = ~buried & (surplus_low == (pull_high < required))
     stalled = buried | (~crossing & (pull_high < required))
@@ -164,19 +165,19 @@ def slip_balance(patch, load, required, low, high, theta_high):
     lane = np.flatnonzero(crossing)
     if lane.size:
         slip[lane], theta[lane] = _newton_balance(patch[:, lane], load[lane], required[lane], low[lane], high[lane],
-                                                  theta_high[lane])
+                                                  theta_high[lane], guess[lane])
     free = np.flatnonzero(~crossing & ~stalled)
     if free.size:                                        # surplus at both ends: the wheel rolls without slip
-        theta[free] = entry_angle(patch[:, free], slip[free], load[free], np.zeros(free.size))
+        theta[free], _, _ = entry_angle(patch[:, free], slip[free], load[free], np.zeros(free.size))
     _, pull, torque = forces(theta, slip, patch)
     buried = np.isnan(pull)                              # also where the soil gives way inside the slip interval
     slip[buried] = np.nan
     return slip, pull, torque, patch[0] * (1 - np.cos(theta)), theta, stalled | buried, buried
 
 
-def _newton_balance(patch, load, required, low, high, theta):
+def _newton_balance(patch, load, required, low, high, theta, guess):
     """Entry angle and slip of lanes whose balance is bracketed: Newton on both, bisection on slip for the rest."""
-    s = np.minimum(0.3, high)
+    s = np.clip(guess, low, high)
     slip_out, theta_out = np.full(load.shape, np.nan), np.full(load.shape, np.nan)
     lane = np.arange(load.size)
     everything = patch, load, required, low, high
@@ -210,8 +211,7 @@ def _bracketed_balance(patch, load, required, low, high):
 
     def surplus(s, index):
         i = index.astype(int)
-        theta = entry_angle(patch[:, i], s, load[i], np.zeros(i.size))
-        return forces(theta, s, patch[:, i])[1] - required[i]
+        return entry_angle(patch[:, i], s, load[i], np.zeros(i.size))[2] - required[i]
 
     s = find_root(surplus, (low, high), args=(np.arange(load.size),), tolerances={"xatol": 1e-12}).x
-    return s, entry_angle(patch, s, load, np.zeros_like(load))
+    return s, entry_angle(patch, s, load, np.zeros_like(load))[0]

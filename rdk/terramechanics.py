@@ -166,7 +166,7 @@ def wheel_forces(wheel, soil, vertical_load_n, slip, *, transition_c1=0.4, trans
 
     def solve(lanes):
         patch, (load, slip) = lanes[:9], lanes[9:]
-        theta_1 = contact.entry_angle(patch, slip, load, np.zeros_like(load))
+        theta_1, _, _ = contact.entry_angle(patch, slip, load, np.zeros_like(load))
         _, pull, torque = contact.forces(theta_1, slip, patch)
         return pull, torque, patch[0] * (1 - np.cos(theta_1)), theta_1
 
@@ -213,8 +213,8 @@ def slip_balance(wheel, soil, vertical_load_n, required_pull_n, *, slip_min=SLIP
 
     def solve(lanes):
         patch, (load, pull, low, high) = lanes[:9], lanes[9:]
-        theta_high = contact.entry_angle(patch, high, load, np.zeros_like(load))
-        return contact.slip_balance(patch, load, pull, low, high, theta_high)
+        theta_high, _, pull_high = contact.entry_angle(patch, high, load, np.zeros_like(load))
+        return contact.slip_balance(patch, load, pull, low, high, theta_high, pull_high, np.full_like(load, 0.3))
 
     return SlipBalance(*contact.in_blocks(solve, lanes, shape))
 
@@ -257,8 +257,8 @@ def slope_capability(wheel, soil, weight_n, *, capability_slip=CAPABILITY_SLIP,
 
     def solve(lanes):
         patch, (weight, slip, limit) = lanes[:9], lanes[9:]
-        theta_1 = contact.entry_angle(patch, slip, weight, np.ones_like(weight))
-        return (contact.slope(patch, slip, theta_1, limit),)
+        at_slip = contact.entry_angle(patch, slip, weight, np.ones_like(weight))
+        return (contact.slope(patch, slip, *at_slip, limit),)
 
     return contact.in_blocks(solve, lanes, shape)[0]
 
@@ -305,10 +305,14 @@ def climb(wheel, soil, weight_n, slope_deg, *, slip_min=SLIP_MIN, slip_max=SLIP_
         patch, (weight, slope, low, high, slip, limit) = lanes[:9], lanes[9:]
         load, count = weight * np.cos(slope), weight.size                # eq. required-dp
         # both entry angles in one batch: a batch twice as long costs less than two batches
-        theta = contact.entry_angle(np.tile(patch, 2), np.concatenate([high, slip]), np.concatenate([load, weight]),
-                             np.repeat([0.0, 1.0], count))
-        return (*contact.slip_balance(patch, load, weight * np.sin(slope), low, high, theta[:count]),
-                contact.slope(patch, slip, theta[count:], limit))
+        ends = contact.entry_angle(np.tile(patch, 2), np.concatenate([high, slip]), np.concatenate([load, weight]),
+                                   np.repeat([0.0, 1.0], count))
+        (theta_high, _, pull_high), at_slip = ends[:, :count], ends[:, count:]
+        # slip grows almost alike in all wheels and soils with the demand's share of the pull at the capability slip
+        demand = np.tan(slope) * at_slip[1] / at_slip[2]
+        guess = np.nan_to_num(slip * np.clip(demand, 0.1, 1.5) ** 1.25, nan=0.5)
+        return (*contact.slip_balance(patch, load, weight * np.sin(slope), low, high, theta_high, pull_high, guess),
+                contact.slope(patch, slip, *at_slip, limit))
 
     *balance, capability = contact.in_blocks(solve, lanes, shape)
     return SlipBalance(*balance), capability

@@ -398,8 +398,8 @@ def test_climb_is_slip_balance_and_slope_capability():
     balance, capability = climb(wheel, soil, weight, slope)
     alone = slip_balance(wheel, soil, weight * np.cos(np.radians(slope)), weight * np.sin(np.radians(slope)))
     for name, value in alone._asdict().items():
-        # same steps
-        np.testing.assert_allclose(getattr(balance, name), value, rtol=1e-9, atol=1e-12, err_msg=name)
+        # Newton starts from different first guesses and leaves about 1e-9 of what it solves for
+        np.testing.assert_allclose(getattr(balance, name), value, rtol=1e-7, atol=1e-9, err_msg=name)
     np.testing.assert_allclose(capability, slope_capability(wheel, soil, weight), rtol=1e-9)
 
 
