@@ -722,6 +722,11 @@ _TESTS = {"ding-2011": "Ding 2011", "hurrell-2025": "Hurrell 2025", "wang-han-20
 _WHEELS = {"smooth": (BLUE, "-", "o"), "grousered": (ORANGE, "--", "s")}
 
 
+def _test_titles(table):
+    """Experiment -> title for those in a table, in its order."""
+    return {test: _TESTS.get(test, test) for test in table.experiment.unique()}
+
+
 def single_wheel_comparison(points, curves):
     """The paper's validation figure, and torque: measured points over the kernel's curves, one column a test.
 
@@ -736,10 +741,11 @@ def single_wheel_comparison(points, curves):
     -------
     matplotlib.figure.Figure
     """
-    figure, grid = _axes(3, 3, figsize=(9.6, 8.2), sharex=True)
+    titles = _test_titles(points)
+    figure, grid = _axes(3, len(titles), figsize=(3.2 * len(titles), 8.2), sharex=True, squeeze=False)
     quantities = {"drawbar_pull_n": "drawbar pull (N)", "sinkage_mm": "sinkage (mm)",
                   "torque_nm": "torque (N m)"}
-    for column, (test, title) in enumerate(_TESTS.items()):
+    for column, (test, title) in enumerate(titles.items()):
         grid[0, column].set_title(title, fontsize=11)
         grid[2, column].set_xlabel("slip s")
         for axes, (quantity, y_label) in zip(grid[:, column], quantities.items()):
@@ -753,10 +759,11 @@ def single_wheel_comparison(points, curves):
                     axes.plot(seen.slip, seen[quantity], marker, color=colour, label=f"{wheel}, measured")
             axes.set_ylabel(y_label)
             axes.axhline(0, color=GREY, linewidth=0.8)
+        if points.torque_nm[points.experiment == test].isna().all():
+            grid[2, column].text(0.95, 0.1, "no torque in the data", transform=grid[2, column].transAxes,
+                                 ha="right", fontsize=9)
     figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False,
                   fontsize=9)
-    grid[2, 1].text(0.95, 0.1, "no torque in the data", transform=grid[2, 1].transAxes, ha="right",
-                    fontsize=9)
     return figure
 
 
@@ -775,7 +782,8 @@ def single_wheel_errors(points):
     matplotlib.figure.Figure
     """
     figure, axes = _axes(1, 2, figsize=(9, 3.6))
-    for (test, title), colour, marker in zip(_TESTS.items(), COLOURS, MARKERS):
+    for i, (test, title) in enumerate(_test_titles(points).items()):
+        colour, marker = COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]
         for wheel in _WHEELS:
             lane = points[(points.experiment == test) & (points.wheel == wheel)]
             pull = 100 * (lane.model_drawbar_pull_n - lane.drawbar_pull_n) / lane.vertical_load_n
@@ -890,7 +898,7 @@ def median_spread(spreads):
         axes.hlines(row, table.low_pct, table.high_pct, color=COLOURS[i], linestyle=DASHES[i], linewidth=2.2,
                     label=label)
         axes.plot(table.median_abs_error_pct, row, MARKERS[i], color=COLOURS[i])
-    names = [f"{_TESTS[test]}, {quantity.replace('_', ' ')}" for test, quantity in
+    names = [f"{_TESTS.get(test, test)}, {quantity.replace('_', ' ')}" for test, quantity in
              zip(table.experiment, table.quantity)]
     axes.set_yticks(np.arange(len(table))[::-1] - 0.15 * (len(spreads) - 1), names)
     axes.set(xscale="log", xlabel="median of |error| (%)")

@@ -35,6 +35,9 @@ def error_pct(model, reference):
 
 # ---- wheels on soil -------------------------------------------------------------------------------------------
 
+_EXPERIMENTS = {"ding": "ding-2011", "hurrell": "hurrell-2025", "wang": "wang-han-2016"}    # the paper's
+
+
 def single_wheel_conditions(points=None):
     """Wheel, soil, load and slip of single-wheel tests, ready for `wheel_forces(*conditions)`.
 
@@ -206,7 +209,8 @@ def bootstrap_medians(reading_error_n=0.5, reading_error_m=1e-3, reading_error_n
 def pull_shift(shear_scale=(0.70, 0.85, 1.15, 1.30)):
     """How far the pull of the tested wheels moves when the kernel's shear stress is scaled.
 
-    Taken over the measured points with positive slip and positive nominal pull, as the paper's robustness study does.
+    Taken over the points of the paper's three experiments with positive slip and positive nominal pull, as its
+    robustness study does.
 
     Parameters
     ----------
@@ -219,7 +223,8 @@ def pull_shift(shear_scale=(0.70, 0.85, 1.15, 1.30)):
         One row a factor: shear_scale, median_shift_pct (of |DP(scale) / DP - 1|), points.
     """
     scale = np.atleast_1d(check("shear_scale", shear_scale, above=0))
-    conditions = single_wheel_conditions()
+    points = catalog.table("single_wheel.csv")
+    conditions = single_wheel_conditions(points[points.experiment.isin(_EXPERIMENTS.values())])
     pull = wheel_forces(*conditions, shear_scale=np.append(1.0, scale)[:, None]).drawbar_pull_n
     used = (conditions[3] > 0) & (pull[0] > 0)
     shift = 100 * abs(pull[1:, used] / pull[0, used] - 1)
@@ -487,7 +492,6 @@ class _Evidence:
         return Searches(self.executor, self.seed_offset)
 
 
-_EXPERIMENTS = {"ding": "ding-2011", "hurrell": "hurrell-2025", "wang": "wang-han-2016"}
 _ROVERS = {"tenacious": "Tenacious", "cadre": "CADRE-unit", "rashid": "Rashid-1", "sojourner": "Sojourner",
            "pragyan": "Pragyan", "yutu2": "Yutu-2", "marsokhod": "MARSOKHOD"}
 

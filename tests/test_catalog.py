@@ -28,13 +28,14 @@ def folder(tmp_path, monkeypatch):
 # ---- what it holds -----------------------------------------------------------------------------------------
 
 def test_every_name_can_be_read():
-    assert len(rdk.soil_names()) == 11 and len(rdk.scenario_names()) == 14 and len(rdk.rover_names()) == 6
+    assert len(rdk.soil_names()) == len(catalog.rows("soils.csv")) > 10
+    assert len(rdk.scenario_names()) == len(catalog.rows("scenarios.csv")) > 13
     assert [rdk.soil(name).name for name in rdk.soil_names()] == list(rdk.soil_names())
     assert [rdk.scenario(name).name for name in rdk.scenario_names()] == list(rdk.scenario_names())
     assert all(isinstance(rdk.rover(name), rdk.Design) for name in rdk.rover_names())
     assert rdk.scenario_names("canonical") == ("equatorial_mare_traverse", "polar_prospecting",
                                                "highland_slope_capability", "crater_rim_survey")
-    assert set(rdk.rover_names()) == {"Pragyan", "Yutu-2", "MoonRanger", "Rashid-1", "Tenacious",
+    assert set(rdk.rover_names()) >= {"Pragyan", "Yutu-2", "MoonRanger", "Rashid-1", "Tenacious",
                                       "CADRE-unit"}
 
 
@@ -60,9 +61,9 @@ def test_panels_are_tilted_towards_the_noon_sun():
 
 def test_table_is_the_file_as_a_frame():
     frame = catalog.table("rovers.csv")
-    assert len(frame) == len(catalog.rows("rovers.csv")) == 13
+    assert len(frame) == len(catalog.rows("rovers.csv")) > 12
     assert frame.published_mass_kg.dtype == float and frame.in_class.dtype == bool
-    assert frame.wheelbase_m.isna().sum() == 7           # the mass check needs no wheelbase
+    assert (frame.wheelbase_m.isna() == (frame.use == "mass check")).all()   # which needs no wheelbase
     rows = catalog.rows("rovers.csv")
     rows[0]["rover"] = "changed"
     assert catalog.rows("rovers.csv")[0]["rover"] != "changed"
@@ -168,7 +169,7 @@ def test_a_damaged_file_is_named_with_what_is_wrong(folder, name, damage, messag
 
 def test_a_repaired_copy_reads_again(folder):
     assert READERS["soils.csv"]() == rdk.soil("apollo-nominal")
-    assert catalog.table("soils.csv").shape[0] == 11
+    assert catalog.table("soils.csv").soil.tolist() == list(rdk.soil_names())
     (folder / "flown.csv").unlink()
     with pytest.raises(FileNotFoundError, match="flown.csv is missing"):
         catalog.table("flown.csv")

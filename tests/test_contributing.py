@@ -11,6 +11,7 @@ import pytest
 
 REPO = Path(__file__).parents[1]
 TEXT = (REPO / "CONTRIBUTING.md").read_text(encoding="utf-8")
+OTHER_TESTS = ("test_catalog.py", "test_validation.py", "test_plots_wheel.py")
 ROWS = re.findall(r"^```csv (data/\w+\.csv)\n(.*?)^```$", TEXT, re.M | re.S)
 
 
@@ -33,6 +34,8 @@ def copy(tmp_path_factory):
         tests, changed = re.subn(rf'("{name}": )(\d+)', lambda m: f"{m[1]}{int(m[2]) + more}", tests)
         assert changed == 1
     (folder / "tests").mkdir()
+    for name in OTHER_TESTS + ("scalar_transcription.py",):
+        shutil.copy(REPO / "tests" / name, folder / "tests")
     (folder / "tests/test_data.py").write_text(tests, encoding="utf-8", newline="\n")
     return folder
 
@@ -52,6 +55,11 @@ def test_there_is_a_recipe_for_each():
 
 def test_the_rows_of_the_recipes_pass_the_tests_of_the_data(copy):
     done = run(copy, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/test_data.py")
+    assert done.returncode == 0, done.stdout[-3000:]
+
+
+def test_new_rows_leave_the_papers_numbers_and_the_pictures_alone(copy):
+    done = run(copy, "-m", "pytest", "-q", "-p", "no:cacheprovider", *(f"tests/{name}" for name in OTHER_TESTS))
     assert done.returncode == 0, done.stdout[-3000:]
 
 
