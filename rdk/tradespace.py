@@ -28,6 +28,7 @@ __all__ = ["Front", "Progress", "attribution", "decode", "encode", "hypervolume"
            "random_designs", "study", "sweep"]
 
 FAILED = 1e9                                             # objective and violation of a lane without a solution
+RANKED_DECIMALS = 8                                      # objectives are compared no finer: see `_nsga2`
 HYPERVOLUME_SCALES = {"range_km": None, "total_mass_kg": 80.0, "slope_capability_deg": 45.0}    # None: the limit
 HYPERVOLUME_REFERENCE = 1.05                             # in every scaled objective
 
@@ -285,7 +286,10 @@ def _nsga2(scenario, study, model, population, generations, first, bounds):
 
         def _evaluate(self, x, out, *args, **kwargs):
             result = evaluate(decode(x, bounds), scenario, model)
-            F = np.stack([getattr(result, name) for name in study.objectives], axis=1) * signs
+            # designs that differ in a variable which no objective feels tie in theory; the last bits, which differ
+            # from one processor to the next, must not rank them
+            F = np.round(np.stack([getattr(result, name) for name in study.objectives], axis=1) * signs,
+                         RANKED_DECIMALS)
             G = np.stack([(getattr(result, name) - limit) * (-1 if sign == ">=" else 1)
                           for name, sign, limit in study.constraints] + [np.zeros(len(x))], axis=1)
             failed = result.buried | ~np.isfinite(F).all(1) | ~np.isfinite(G).all(1)
