@@ -119,7 +119,7 @@ def test_dominated_by_hand():
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_front_does_not_hang_on_the_last_bits(monkeypatch, name):
-    """Processors round differently. Without care that decides between designs that differ only in the wheelbase."""
+    """Processors round differently, which must not decide between designs that differ only in the wheelbase."""
     random, evaluate = np.random.default_rng(1), tradespace.evaluate
 
     def on_another_machine(*arguments):
@@ -134,7 +134,8 @@ def test_a_front_does_not_hang_on_the_last_bits(monkeypatch, name):
     assert len(here) == len(there)
     for variable in rdk.DESIGN_SPACE:
         # the front is in the order of mass, and equal masses may change places: compare the sets
-        assert_allclose(np.sort(getattr(here.designs, variable)), np.sort(getattr(there.designs, variable)), rtol=1e-12)
+        one, other = (np.sort(getattr(front.designs, variable)) for front in (here, there))
+        assert_allclose(one, other, rtol=1e-12)
 
 
 # ---- families ----------------------------------------------------------------------------------------------
