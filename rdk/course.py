@@ -1,7 +1,7 @@
 """Self-checks of the notebooks' exercises: `rdk.check("01.2", answer)`.
 
-An exercise computes its answer with `rdk`; no answer is stored. Typical mistakes are computed too, each with the hint
-meant for it. The exercises themselves are in `exercises`.
+An exercise computes its answer with `rdk`; no answer is stored. Typical mistakes are computed too, each with
+the hint meant for it. The exercises themselves are in `exercises`.
 """
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from .design import Design
 
 EXERCISES = {}
 """Every exercise by its number, filled by `exercises`."""
-UNITS = (1e3, 1e-3, 1e2, 1e-2, 1e6, 1e-6, 24.0, 1 / 24, 60.0, 1 / 60, 3.6, 1 / 3.6, np.pi / 180, 180 / np.pi, -1.0)
+UNITS = (1e3, 1e-3, 1e2, 1e-2, 1e6, 1e-6, 24.0, 1 / 24, 60.0, 1 / 60, 3.6, 1 / 3.6, np.pi / 180, 180 / np.pi,
+         -1.0)
 """Factors by which an answer in another unit is off."""
 
 
@@ -28,7 +29,7 @@ class Exercise:
     number : str
         Notebook and exercise, such as "01.2".
     answer : callable
-        Returns a right answer: a number, a list of numbers, a word, a set of words, True or False, or a Design.
+        Returns a right answer: a number, a list of numbers, a word, a set of words, True or False, a Design.
     hint : str
         What to look at, for a wrong answer that no mistake explains.
     mistakes : dict of str to callable
@@ -112,19 +113,20 @@ def check(number, answer):
     answer = _of_kind(task, answer)
     if task.judge is not None:
         missing = task.judge(answer)
-        return Verdict(False, "Not yet. " + missing) if missing else Verdict(True, "Right: it does what was asked.")
+        return Verdict(not missing, f"Not yet. {missing}" if missing else "Right: it does what was asked.")
     if _agree(answer, task.expected, task.within):
         return Verdict(True, "Right.")
     for hint, wrong in task.mistakes.items():
         if _agree(answer, wrong(), task.within):
             return Verdict(False, "Not yet. " + hint)
-    if isinstance(answer, np.ndarray) and any(_agree(answer * unit, task.expected, task.within) for unit in UNITS):
-        return Verdict(False, "Not yet. The digits are right: look at the unit that the exercise asks for, or at the sign.")
+    if isinstance(answer, np.ndarray) and any(_agree(answer * unit, task.expected, task.within)
+                                              for unit in UNITS):
+        return Verdict(False, "Not yet. The digits are right: look at the unit asked for, or at the sign.")
     return Verdict(False, "Not yet. " + task.hint)
 
 
 def _of_kind(task, answer):
-    """The answer as the kind of thing that the exercise asks for, or a ValueError that says what it asks for."""
+    """The answer as the kind of thing that the exercise asks for, or a ValueError that says what that is."""
     expected, asks = task.expected, f"exercise {task.number} asks for"
     got = f"; got {answer!r}" if len(repr(answer)) < 80 else f"; got a {type(answer).__name__}"
     if isinstance(expected, Design):
@@ -145,7 +147,7 @@ def _of_kind(task, answer):
             raise ValueError(f"{asks} True or False{got}")
         return bool(answer)
     shape = np.shape(expected)
-    asks += " one number" if not shape else f" {shape[0]} numbers" if len(shape) == 1 else f" numbers of shape {shape}"
+    asks += {0: " one number", 1: f" {np.size(expected)} numbers"}.get(len(shape), f" numbers of shape {shape}")
     try:
         given = np.asarray(answer)
     except ValueError:                                   # ragged

@@ -1,4 +1,4 @@
-"""One page on one design: what it must do, what it does, how sure that is, and why; as a self-contained HTML file.
+"""One page on one design: what it must do, what it does, how sure that is, and why; as an HTML file.
 
 The page embeds its pictures, needs no network and prints on one A4 page.
 """
@@ -28,8 +28,9 @@ h1 { font-size: 15pt; margin: 0 0 1mm } h2 { font-size: 10pt; margin: 2.5mm 0 1m
 table { border-collapse: collapse; width: 100% } td, th { padding: 0.25mm 1.5mm; text-align: right }
 td:first-child, th:first-child { text-align: left } th { border-bottom: 0.3mm solid #000; text-align: right }
 tr.missed td { font-weight: bold } .verdict { border-left: 1.2mm solid #0072B2; padding-left: 2mm }
-.verdict.missed { border-color: #D55E00 } .columns { display: grid; grid-template-columns: 1fr 1fr; gap: 1mm 5mm }
-.columns img { width: 100%; height: auto } .wide { grid-template-columns: 42fr 58fr } .small { font-size: 7.5pt }
+.verdict.missed { border-color: #D55E00 } .small { font-size: 7.5pt }
+.columns { display: grid; grid-template-columns: 1fr 1fr; gap: 1mm 5mm }
+.columns img { width: 100%; height: auto } .wide { grid-template-columns: 42fr 58fr }
 @media screen { body { padding: 6mm } }
 @media print { .screen { display: none } }
 """
@@ -40,8 +41,8 @@ SIZE, SHARP = (5.6, 3.3), 150                            # inches on the page's 
 class Requirement(NamedTuple):
     """A demand on one metric, and how surely a design meets it.
 
-    `low` and `high` span the 90 % interval, `share` is the share of draws in which the demand holds, and `driver` the
-    uncertain input with the strongest rank correlation to the metric ("" where the metric does not vary).
+    `low` and `high` span the 90 % interval, `share` is the share of draws in which the demand holds, `driver`
+    the uncertain input with the strongest rank correlation to the metric ("" where the metric does not vary).
     """
     metric: str
     sign: str
@@ -69,7 +70,7 @@ def requirements(design, scenario, draws=400, seed=0, model=Model()):
     ----------
     design : Design
     scenario : Scenario
-        Single ones. Its `study.constraints` are the demands; that the rover drives the mission at all comes first.
+        Single ones. Its `study.constraints` are the demands; that the rover drives the mission comes first.
     draws, seed : int
         Of the Monte-Carlo intervals.
     model : Model
@@ -98,10 +99,12 @@ def _requirement(metric, sign, limit, found, inputs):
     holds = values >= limit if sign == ">=" else values <= limit             # false where NaN
     met = nominal >= limit if sign == ">=" else nominal <= limit
     values = np.nan_to_num(values)
-    strength = {name: abs(np.corrcoef(rankdata(draw), rankdata(values))[0, 1]) for name, draw in inputs.items()
+    strength = {name: abs(np.corrcoef(rankdata(draw), rankdata(values))[0, 1])
+                for name, draw in inputs.items()
                 if np.ptp(draw) > 0 and np.ptp(values) > 0}
     driver = max(strength, key=strength.get, default="")
-    return Requirement(metric, sign, float(limit), nominal, float(found.low[metric]), float(found.high[metric]),
+    return Requirement(metric, sign, float(limit), nominal, float(found.low[metric]),
+                       float(found.high[metric]),
                        bool(met), float(holds.mean()), driver)
 
 
@@ -116,12 +119,12 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
         Single ones; the scenario's study gives the demands.
     title : str
     notes : str
-        What the reader should know beyond the tables: choices, risks, doubts. An empty line starts a paragraph.
+        What to know beyond the tables: choices, risks, doubts. An empty line starts a paragraph.
     front : Front, optional
         Shown with the design on it; without one, the published rovers are shown on this mission.
     baseline : Design, optional
-        Whose difference to the design is attributed to the variables; by default the published rover that is nearest
-        in mass on this mission.
+        Whose difference to the design is attributed to the variables; by default the published rover that is
+        nearest in mass on this mission.
     baseline_name : str
     why : str
         The metric whose difference is attributed.
@@ -172,7 +175,8 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
     binds = explain.binding(design, scenario, result, model).sentence
     return "\n".join([
         "<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8">', f"<title>{_text(title)}</title>",
-        f"<style>{STYLE}</style></head><body>", f"<h1>{_text(title)}</h1>", f"<p>{_text(_mission_words(scenario))}</p>",
+        f"<style>{STYLE}</style></head><body>", f"<h1>{_text(title)}</h1>",
+        f"<p>{_text(_mission_words(scenario))}</p>",
         f'<p class="verdict{" missed" * bool(missed)}"><b>{_text(verdict)}</b> {_text(binds)}</p>',
         '<div class="columns wide"><div>', "<h2>Design</h2>", _design_table(design, bounds),
         "</div><div>", "<h2>Demands</h2>", _demand_table(demands),
@@ -180,7 +184,8 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
         '<div class="columns">', *drawn, "</div>",
         *(["<h2>Notes</h2>"] if notes.strip() else []),
         *(f"<p>{_text(part)}</p>" for part in notes.split("\n\n") if part.strip()),
-        f'<p class="small">{_text(_small_print(model, draws))}</p>', _download(design, scenario), "</body></html>", ""])
+        f'<p class="small">{_text(_small_print(model, draws))}</p>', _download(design, scenario),
+        "</body></html>", ""])
 
 
 def write(text, path):
@@ -223,17 +228,19 @@ def _on_front(front, result):
         values = np.asarray(getattr(front.performance, name), float)
         return np.ptp(values) / max(np.abs(values).max(), 1e-12)
 
-    up = max((name for name in front.study.objectives if name != "total_mass_kg"), key=spread, default="range_km")
+    up = max((name for name in front.study.objectives if name != "total_mass_kg"), key=spread,
+             default="range_km")
     axes = ("total_mass_kg", up)
     return _picture(pictures.front, *(getattr(front.performance, name) for name in axes), axes, None,
-                    tuple(getattr(result, name) for name in axes), None, "front of the mission, and this design")
+                    tuple(getattr(result, name) for name in axes), None,
+                    "front of the mission, and this design")
 
 
 def _mission_words(scenario):
     name = scenario.name.replace("_", " ")
-    return (f"Mission: {name}, latitude {scenario.latitude_deg:g} deg, {scenario.duration_earth_days:g} Earth days from "
-            f"sunrise, slopes of {scenario.slope_deg:g} deg in {scenario.soil.name or 'unnamed soil'}, driving "
-            f"{100 * scenario.duty_cycle:g} % of the time, payload {scenario.payload_mass_kg:g} kg and "
+    return (f"Mission: {name}, latitude {scenario.latitude_deg:g} deg, {scenario.duration_earth_days:g} Earth "
+            f"days from sunrise, slopes of {scenario.slope_deg:g} deg in {scenario.soil.name or 'some soil'}, "
+            f"driving {100 * scenario.duty_cycle:g} % of the time, payload {scenario.payload_mass_kg:g} kg, "
             f"{scenario.payload_power_w:g} W, panel tilt {scenario.panel_tilt_deg:g} deg, range limit "
             f"{scenario.traverse_limit_km:g} km.")
 
@@ -254,7 +261,8 @@ def _design_table(design, bounds):
         low, high = (bounds or {}).get(name, (variable.low, variable.high))
         outside = not low * (1 - 1e-12) <= value <= high * (1 + 1e-12)
         unit = f" {variable.unit}" if variable.unit != "1" else ""
-        rows.append((outside, variable.label, f"{value:.4g}{unit}", f"{low:g} to {high:g}" + ", outside" * outside))
+        rows.append((outside, variable.label, f"{value:.4g}{unit}",
+                     f"{low:g} to {high:g}" + ", outside" * outside))
     return _rows(("variable", "value", "allowed"), rows)
 
 
@@ -282,9 +290,9 @@ def _risks(demands):
 def _small_print(model, draws):
     changed = {name: value for name, value in model.numbers().items() if value != getattr(Model(), name)}
     words = ", ".join(f"{name} = {value:g}" for name, value in changed.items()) or "the paper's coefficients"
-    return (f"Intervals: {draws} draws from data/uncertainties.csv, 5 % to 95 %; they cover soil and coefficients, not "
-            f"what the models leave out: tip-over, load transfer, terrain shadows, multi-pass, and structure that must "
-            f"grow with its load. Model: {words}.")
+    return (f"Intervals: {draws} draws from data/uncertainties.csv, 5 % to 95 %; they cover soil and "
+            "coefficients, not what the models leave out: tip-over, load transfer, terrain shadows, multi-pass, "
+            f"and structure that must grow with its load. Model: {words}.")
 
 
 def _download(design, scenario):

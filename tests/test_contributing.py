@@ -27,7 +27,8 @@ def copy(tmp_path_factory):
     page = folder / "data/README.md"                     # "add the name to the allowed words of `experiment`"
     words = page.read_text(encoding="utf-8")
     assert words.count("wang-han-2016 |") == 1
-    page.write_text(words.replace("wang-han-2016 |", "wang-han-2016; example-2026 |"), encoding="utf-8", newline="\n")
+    page.write_text(words.replace("wang-han-2016 |", "wang-han-2016; example-2026 |"), encoding="utf-8",
+                    newline="\n")
     tests = (REPO / "tests/test_data.py").read_text(encoding="utf-8")
     for path, lines in ROWS:                             # "raise the number of rows in `ROWS`"
         name, more = path.removeprefix("data/"), lines.count("\n")
@@ -43,7 +44,8 @@ def copy(tmp_path_factory):
 def run(folder, *arguments):
     """Python in the copy, on the copy's rdk."""
     environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
-    return subprocess.run([sys.executable, *arguments], cwd=folder, env=environment, capture_output=True, text=True)
+    return subprocess.run([sys.executable, *arguments], cwd=folder, env=environment, capture_output=True,
+                          text=True)
 
 
 def test_there_is_a_recipe_for_each():
@@ -59,7 +61,8 @@ def test_the_rows_of_the_recipes_pass_the_tests_of_the_data(copy):
 
 
 def test_new_rows_leave_the_papers_numbers_and_the_pictures_alone(copy):
-    done = run(copy, "-m", "pytest", "-q", "-p", "no:cacheprovider", *(f"tests/{name}" for name in OTHER_TESTS))
+    done = run(copy, "-m", "pytest", "-q", "-p", "no:cacheprovider",
+               *(f"tests/{name}" for name in OTHER_TESTS))
     assert done.returncode == 0, done.stdout[-3000:]
 
 
@@ -68,7 +71,8 @@ def test_a_row_that_breaks_a_rule_does_not(copy, tmp_path):
     broken = tmp_path / "copy"
     shutil.copytree(copy, broken)
     path = broken / "data/soils.csv"
-    path.write_text(path.read_text(encoding="utf-8").replace("density_kg_m3,,shear_modulus_mm,he2013", ",,shear_modulus_mm,he2013"),
+    path.write_text(path.read_text(encoding="utf-8").replace("density_kg_m3,,shear_modulus_mm,he2013",
+                                                             ",,shear_modulus_mm,he2013"),
                     encoding="utf-8", newline="\n")
     assert run(broken, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/test_data.py").returncode == 1
 
@@ -90,5 +94,6 @@ def test_the_committed_data_hold_no_example():
 
 
 def test_named_files_and_links_exist():
-    for name in re.findall(r"`((?:rdk|data|tests|notebooks)/[\w./]+)`", TEXT) + re.findall(r"\]\(([^)#]+)\)", TEXT):
+    for name in re.findall(r"`((?:rdk|data|tests|notebooks)/[\w./]+)`", TEXT) + re.findall(r"\]\(([^)#]+)\)",
+                                                                                           TEXT):
         assert (REPO / name).exists(), name

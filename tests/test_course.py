@@ -1,4 +1,4 @@
-"""The exercises: answers pass their own check, typical mistakes get their own hint, notebooks and registry agree."""
+"""The exercises: answers pass their own check, mistakes get their own hint, notebooks and registry agree."""
 
 import re
 from pathlib import Path
@@ -55,7 +55,8 @@ def test_hints_give_no_answer_away(number):
         assert not re.search(rf"\b{re.escape(task.expected.lower())}\b", words.lower())
     elif task.judge is None and not isinstance(task.expected, (bool, set)):
         numbers = [float(found) for found in re.findall(r"(?<![\w.])-?\d+\.?\d*(?![\w.])", words)]
-        close = [n for n in numbers for value in np.ravel(task.expected) if abs(n - value) <= 0.005 * abs(value)]
+        close = [n for n in numbers for value in np.ravel(task.expected)
+                 if abs(n - value) <= 0.005 * abs(value)]
         assert not close, (close, words)
 
 
@@ -96,13 +97,15 @@ def test_unknown_exercises_are_refused_and_the_known_ones_named():
         course.exercise("12.1", lambda: 1.0, "")
 
 
-@pytest.mark.parametrize("answer", ["0.12", None, True, [1.0, 2.0], [[1.0], [1.0, 2.0]], np.nan, np.inf, 1j, {}])
+@pytest.mark.parametrize("answer", ["0.12", None, True, [1.0, 2.0], [[1.0], [1.0, 2.0]], np.nan, np.inf, 1j,
+                                    {}])
 def test_answers_of_the_wrong_kind_to_a_number(answer):
     with pytest.raises(ValueError, match="exercise 12.1 asks for one number"):
         rdk.check("12.1", answer)
 
 
-@pytest.mark.parametrize("answer", [1.0, "a rover", None, {"wheel_radius_m": 0.1}, rdk.random_designs(3, seed=1)])
+@pytest.mark.parametrize("answer", [1.0, "a rover", None, {"wheel_radius_m": 0.1},
+                                    rdk.random_designs(3, seed=1)])
 def test_answers_of_the_wrong_kind_to_a_design_task(answer):
     with pytest.raises(ValueError, match="exercise 12.4 asks for one Design; got"):
         rdk.check("12.4", answer)
@@ -110,7 +113,8 @@ def test_answers_of_the_wrong_kind_to_a_design_task(answer):
 
 def test_answers_of_the_wrong_kind_to_the_other_kinds(monkeypatch):
     monkeypatch.setattr(course, "EXERCISES", dict(TASKS))
-    course.exercise("99.1", lambda: "sun", "look up", {"too wet": lambda: "rain"}, choices=("sun", "rain", "snow"))
+    course.exercise("99.1", lambda: "sun", "look up", {"too wet": lambda: "rain"},
+                    choices=("sun", "rain", "snow"))
     course.exercise("99.2", lambda: {"sun", "rain"}, "look up", choices=("sun", "rain", "snow"))
     course.exercise("99.3", lambda: True, "look up")
     course.exercise("99.4", lambda: [1.0, 0.0], "look up", {"swapped": lambda: [0.0, 1.0]})
@@ -127,7 +131,7 @@ def test_answers_of_the_wrong_kind_to_the_other_kinds(monkeypatch):
     assert rdk.check("99.4", [0, 1]).message == "Not yet. swapped" and not rdk.check("99.4", [1.0, 0.1])
 
 
-# ---- the notebooks --------------------------------------------------------------------------------------------
+# ---- the notebooks -----------------------------------------------------------------------------------------
 
 def exercises_of(path):
     """The cells that follow each exercise heading, up to the next heading: {number: (heading, cells)}."""
@@ -164,9 +168,11 @@ def test_no_notebook_has_exercises_that_the_registry_lacks():
 def test_each_exercise_has_a_hint_a_place_for_the_answer_and_a_checked_solution(number):
     _, (text, *cells) = exercises_of(PATHS[number[:2]])[number]
     assert re.search(r"<details><summary>Hint</summary>.+</details>", text.source, re.S), "a collapsed hint"
-    open_cells = [cell for cell in cells if cell.cell_type == "code" and "solution" not in cell.metadata.get("tags", [])]
+    open_cells = [cell for cell in cells if cell.cell_type == "code"
+                  and "solution" not in cell.metadata.get("tags", [])]
     solutions = [cell for cell in cells if "solution" in cell.metadata.get("tags", [])]
     assert [cell.source for cell in open_cells] == [f'answer = ...\nrdk.check("{number}", answer)']
     assert "No answer yet" in open_cells[0].outputs[0]["data"]["text/plain"]
-    assert any(f'assert rdk.check("{number}", ' in cell.source for cell in solutions), "the solution passes its check"
+    assert any(f'assert rdk.check("{number}", ' in cell.source
+               for cell in solutions), "the solution passes its check"
     assert exercises.__doc__ and all(cell.metadata["jupyter"]["source_hidden"] for cell in solutions)

@@ -13,25 +13,31 @@ import nbformat
 import pytest
 
 import rdk
-from rdk import catalog, contact, controls, course, design, explain, explorer, keep, mass, mission, power  # noqa: F401
-from rdk import report, sampling, terramechanics, thermal, tradespace, validation
+from rdk import catalog, contact, course, design, explain, keep, mass, mission, power, report, sampling
+from rdk import terramechanics, thermal, tradespace, validation
 
 REPO = Path(__file__).parents[1]
 TEXT = (REPO / "notebooks/glossary.md").read_text(encoding="utf-8")
 PATHS = sorted((REPO / "notebooks").glob("[0-9][0-9]_*.ipynb"))
 CONSTANTS = {row["name"]: row for row in csv.DictReader((REPO / "data/constants.csv").open(encoding="utf-8"))}
-RECORDS = {"Design": rdk.Design, "Scenario": rdk.Scenario, "Study": design.Study, "Soil": rdk.Soil, "Wheel": rdk.Wheel,
+RECORDS = {"Design": rdk.Design, "Scenario": rdk.Scenario, "Study": design.Study, "Soil": rdk.Soil,
+           "Wheel": rdk.Wheel,
            "Model": rdk.Model, "Performance": rdk.Performance, "MassBreakdown": mass.MassBreakdown,
            "TraverseLog": mission.TraverseLog, "Front": tradespace.Front}
-MODULES = (catalog, contact, course, design, explain, keep, mass, mission, power, report, sampling, terramechanics,
+MODULES = (catalog, contact, course, design, explain, keep, mass, mission, power, report, sampling,
+           terramechanics,
            thermal, tradespace, validation)
 SUFFIXES = {
-    "_m": "m", "_mm": "mm", "_km": "km", "_m2": "m2", "_kg": "kg", "_n": "N", "_nm": "N m", "_pa": "Pa", "_kpa": "kPa",
-    "_deg": "deg", "_rad": "rad", "_h": "h", "_earth_days": "Earth days", "_w": "W", "_wh": "Wh", "_k": "K", "_c": "degC",
+    "_m": "m", "_mm": "mm", "_km": "km", "_m2": "m2", "_kg": "kg", "_n": "N", "_nm": "N m", "_pa": "Pa",
+    "_kpa": "kPa",
+    "_deg": "deg", "_rad": "rad", "_h": "h", "_earth_days": "Earth days", "_w": "W", "_wh": "Wh", "_k": "K",
+    "_c": "degC",
     "_pct": "%", "_m_s": "m/s", "_rad_s": "rad s-1", "_m_s2": "m s-2", "_w_m2": "W m-2", "_kg_m2": "kg m-2",
-    "_kg_m3": "kg m-3", "_kg_nm": "kg N-1 m-1", "_kg_w": "kg W-1", "_wh_kg": "Wh kg-1", "_kn_m_n1": "kN/m^(n+1)",
+    "_kg_m3": "kg m-3", "_kg_nm": "kg N-1 m-1", "_kg_w": "kg W-1", "_wh_kg": "Wh kg-1",
+    "_kn_m_n1": "kN/m^(n+1)",
     "_kn_m_n2": "kN/m^(n+2)"}
-WORDS = {"m": "m", "metres": "m", "mm": "mm", "km": "km", "m2": "m2", "kg": "kg", "newtons": "N", "n": "N", "n m": "N m", "pa": "Pa",
+WORDS = {"m": "m", "metres": "m", "mm": "mm", "km": "km", "m2": "m2", "kg": "kg", "newtons": "N", "n": "N",
+         "n m": "N m", "pa": "Pa",
          "kpa": "kPa", "degrees": "deg", "radians": "rad", "hours": "h", "w": "W", "wh": "Wh", "kelvin": "K",
          "degrees celsius": "degC", "percent": "%", "w/m2": "W m-2", "kn/m^(n+1)": "kN/m^(n+1)",
          "kn/m^(n+2)": "kN/m^(n+2)", "wh/kg": "Wh kg-1", "m/s": "m/s"}
@@ -65,7 +71,7 @@ def plain(symbol):
     return re.sub(r"mathrm|[^A-Za-z0-9]", "", symbol).replace("epsilon", "eps")
 
 
-# ---- the glossary and the code --------------------------------------------------------------------------------
+# ---- the glossary and the code -----------------------------------------------------------------------------
 
 @pytest.mark.parametrize("heading", RECORDS)
 def test_a_record_has_every_field_in_the_glossary_and_the_glossary_no_other(heading):
@@ -93,7 +99,8 @@ def test_the_unit_is_the_one_that_the_suffix_says(heading, name, symbol, unit, m
 
 def test_flags_and_only_flags_are_true_or_false():
     result = rdk.evaluate(rdk.rover("Rashid-1"), rdk.scenario("equatorial_mare_traverse"))
-    for heading, record in ("Performance", result), ("TraverseLog", result.log), ("MassBreakdown", result.mass):
+    records = {"Performance": result, "TraverseLog": result.log, "MassBreakdown": result.mass}
+    for heading, record in records.items():
         for row in TABLES[heading]:
             kind = type(getattr(record, row[0].strip("`")))
             if heading != "TraverseLog":
@@ -120,7 +127,8 @@ def test_the_kernels_symbols_and_their_public_names_exist():
     used |= {node.arg for node in ast.walk(ast.parse(source)) if isinstance(node, ast.arg)}
     for name, _, _, meaning in TABLES["The kernel"]:
         assert name.strip("`") in used | {"theta", "omega", "z"}, name
-        assert not [public for public in re.findall(r"`(\w+)`", meaning) if public not in NAMES | used], meaning
+        assert not [public for public in re.findall(r"`(\w+)`", meaning)
+                    if public not in NAMES | used], meaning
     assert {"theta", "z"} <= used and "omega" in inspect.getsource(mission)
 
 
@@ -137,7 +145,7 @@ def test_equations_carry_their_names_in_the_code():
         assert set(re.findall(r"\beq\. ([a-z][a-z-]+)", inspect.getsource(module))) <= named
 
 
-# ---- docstrings -----------------------------------------------------------------------------------------------
+# ---- docstrings --------------------------------------------------------------------------------------------
 
 def documented(text):
     """(names, description) of every entry `name, name : type` of a numpydoc docstring."""
@@ -158,7 +166,8 @@ def contradictions(text):
     for names, description in documented(text):
         units = {unit_of(name) for name in names} - {None}
         stated = re.findall(r"\b[Ii]n (degrees Celsius|N m\b|[A-Za-z]\S*)", description)
-        stated = {WORDS[word.lower().rstrip(".,;:")] for word in stated if word.lower().rstrip(".,;:") in WORDS}
+        stated = {WORDS[word.lower().rstrip(".,;:")] for word in stated
+                  if word.lower().rstrip(".,;:") in WORDS}
         if units and not stated <= units:
             yield names, stated - units
 
@@ -173,7 +182,8 @@ def test_the_check_of_docstrings_can_fail():
 def test_docstrings_state_the_units_of_the_names(module):
     checked = 0
     for name, thing in vars(module).items():
-        if getattr(thing, "__module__", None) == module.__name__ and (inspect.isfunction(thing) or inspect.isclass(thing)):
+        ours = getattr(thing, "__module__", None) == module.__name__
+        if ours and (inspect.isfunction(thing) or inspect.isclass(thing)):
             assert not list(contradictions(thing.__doc__)), name
             checked += 1
             if dataclasses.is_dataclass(thing):          # an entry for a field that is gone would mislead
@@ -183,7 +193,7 @@ def test_docstrings_state_the_units_of_the_names(module):
     assert checked
 
 
-# ---- the notebooks --------------------------------------------------------------------------------------------
+# ---- the notebooks -----------------------------------------------------------------------------------------
 
 def known_names():
     """Every identifier that rdk, its data and the glossary know."""
@@ -206,12 +216,14 @@ def own_names(tree):
         elif isinstance(node, (ast.FunctionDef, ast.arg)):
             yield getattr(node, "name", None) or node.arg
         elif isinstance(node, ast.Call):                 # columns: frame.assign(...), dict(...)
-            if getattr(node.func, "attr", getattr(node.func, "id", "")) in ("assign", "dict", "DataFrame", "agg"):
+            called = getattr(node.func, "attr", getattr(node.func, "id", ""))
+            if called in ("assign", "dict", "DataFrame", "agg"):
                 yield from (keyword.arg for keyword in node.keywords if keyword.arg)
-        elif isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):    # frame["new column"] = ...
+        elif isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):    # frame["new"] = ...
             yield getattr(node.slice, "value", "")
         elif isinstance(node, ast.Dict):
-            yield from (key.value for key in node.keys if isinstance(key, ast.Constant) and isinstance(key.value, str))
+            yield from (key.value for key in node.keys if isinstance(key, ast.Constant)
+                        and isinstance(key.value, str))
 
 
 @pytest.mark.parametrize("path", PATHS, ids=lambda path: path.name)
@@ -220,19 +232,23 @@ def test_notebooks_use_names_that_exist(path):
     tree = ast.parse("\n".join(cell.source for cell in notebook.cells if cell.cell_type == "code"))
     known = KNOWN | set(own_names(tree))
     used = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-    used |= {word.arg for node in ast.walk(tree) if isinstance(node, ast.Call) for word in node.keywords if word.arg}
-    used |= {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    used |= {word.arg for node in ast.walk(tree) if isinstance(node, ast.Call) for word in node.keywords
+             if word.arg}
+    used |= {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)
+             and isinstance(node.value, str)}
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
             used |= set(re.findall(r"`(?:\w+\.)*(\w+)`", cell.source))
     with_unit = {name for name in used if re.fullmatch(r"[a-z]\w*", name) and "_" in name and unit_of(name)}
-    endings = tuple(name for name in KNOWN if name.startswith("_") and unit_of(name) and len(name) > 6)  # f"{x}_error_pct"
+    # names that rdk puts together, such as f"{x}_error_pct"
+    endings = tuple(name for name in KNOWN if name.startswith("_") and unit_of(name) and len(name) > 6)
     assert not [name for name in with_unit - known if not name.endswith(endings)]
 
 
 @pytest.mark.parametrize("path", PATHS, ids=lambda path: path.name)
 def test_numbered_equations_are_those_of_the_paper(path):
-    prose = "\n".join(cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "markdown")
+    prose = "\n".join(cell.source for cell in nbformat.read(path, as_version=4).cells
+                      if cell.cell_type == "markdown")
     tags = re.findall(r"\\tag\{([^}]*)\}", prose)
     assert len(tags) == len(set(tags)) and set(tags) <= {row[0] for row in TABLES["Equations"]}
 
@@ -241,7 +257,8 @@ def test_numbered_equations_are_those_of_the_paper(path):
 def test_words_are_explained_where_the_glossary_says(word, meaning, notebooks):
     for number in notebooks.split(", "):
         path, = (path for path in PATHS if path.name.startswith(number))
-        prose = "\n".join(c.source for c in nbformat.read(path, as_version=4).cells if c.cell_type == "markdown").lower()
+        prose = "\n".join(c.source for c in nbformat.read(path, as_version=4).cells
+                          if c.cell_type == "markdown").lower()
         for name in word.lower().split(", "):
             assert name in prose or name.replace("-", " ") in prose, (name, path.name)
 

@@ -26,12 +26,14 @@ def lines(cell):
 
 
 def reading_minutes(notebook):
-    """A reader's time: 200 words and 60 lines of code a minute, 15 s an equation, 20 s a picture; solutions left out."""
+    """A reader's time without solutions: 200 words, 60 lines a minute, 15 s an equation, 20 s a picture."""
     text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
     equations = re.findall(r"\$\$.+?\$\$", text, re.S)
     words = len(re.sub(r"\$\$.+?\$\$|<[^>]+>|\]\([^)]*\)", " ", text, flags=re.S).split())
-    code = sum(len(lines(cell)) for cell in notebook.cells if cell.cell_type == "code" and "solution" not in tags(cell))
-    pictures = sum("image/png" in out.get("data", {}) for cell in notebook.cells for out in cell.get("outputs", []))
+    code = sum(len(lines(cell)) for cell in notebook.cells if cell.cell_type == "code"
+               and "solution" not in tags(cell))
+    pictures = sum("image/png" in out.get("data", {}) for cell in notebook.cells
+                   for out in cell.get("outputs", []))
     return words / 200 + code / 60 + len(equations) / 4 + pictures / 3
 
 
@@ -135,12 +137,13 @@ def test_anatomy(path, notebook, prose):
 def test_length(path, notebook):
     minutes, stated = reading_minutes(notebook), int(stated_minutes(path))
     assert minutes <= MOST_MINUTES >= stated
-    assert 0.75 <= stated / minutes <= 1.5, f"states {stated} minutes of reading, a reader takes about {minutes:.0f}"
+    assert 0.75 <= stated / minutes <= 1.5, f"states {stated} minutes, a reader takes about {minutes:.0f}"
 
 
 def test_no_dead_reference(path, prose):
     steps = set(re.findall(r"^## (\d+)\b", prose, re.M))
-    mentioned = re.findall(r"\b[Ss]ections? (\d+)(?:(?:,| and| to) (\d+))?\b(?! of)", prose)  # of this notebook
+    mentioned = re.findall(r"\b[Ss]ections? (\d+)(?:(?:,| and| to) (\d+))?\b(?! of)",
+                           prose)  # of this notebook
     assert {number for pair in mentioned for number in pair if number} <= steps
     numbers = {other.name[:2] for other in PATHS}
     assert set(re.findall(r"[Nn]otebooks? (\d\d)\b", prose)) <= numbers
@@ -150,7 +153,8 @@ def test_no_dead_reference(path, prose):
             assert hasattr(thing, part), f"`rdk{name}`"
             thing = getattr(thing, part)
     assert not [name for name in re.findall(r"`(data/[\w./]+)`", prose) if not (REPO / name).exists()]
-    heads = {re.sub(r"[^\w\- ]", "", head).strip().replace(" ", "-") for head in re.findall(r"^#+ (.+)$", prose, re.M)}
+    heads = {re.sub(r"[^\w\- ]", "", head).strip().replace(" ", "-")
+             for head in re.findall(r"^#+ (.+)$", prose, re.M)}
     assert set(re.findall(r"\]\(#([^)]+)\)", prose)) <= heads
 
 
@@ -161,7 +165,8 @@ def test_references_are_in_the_bibliography_and_carry_their_doi(prose):
         plain = "".join(c for c in unicodedata.normalize("NFD", reference) if not unicodedata.combining(c))
         dois = [doi for name, year, doi in bibliography() if name in plain and year in plain]
         assert dois, f"not in data/references.bib by first author and year: {reference}"
-        assert not all(dois) or any(doi in plain.lower() for doi in dois), f"its DOI is known, but missing: {reference}"
+        assert not all(dois) or any(doi in plain.lower()
+                                    for doi in dois), f"its DOI is known, but missing: {reference}"
 
 
 def test_links_resolve(path, prose):
@@ -190,14 +195,17 @@ def test_readme_lists_the_collection_with_its_minutes():
 def test_the_guide_lists_every_notebook_and_puts_each_on_the_course():
     guide = (REPO / "notebooks/README.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| \[(\d\d_\w+)\]\(\1\.ipynb\) \| (.+) \|([\d, ]*)\| (\d+) \|$", guide, re.M)
-    assert [(name, minutes) for name, _, _, minutes in rows] == [(path.stem, stated_minutes(path)) for path in PATHS]
+    assert [(name, minutes) for name, _, _, minutes in rows] == [(path.stem, stated_minutes(path))
+                                                                 for path in PATHS]
     for name, _, needs, _ in rows:                       # nothing is needed before it has been read
         assert all(needed < name[:2] for needed in needs.strip().split(", ") if needed)
     weeks = guide.partition("| Week |")[2].partition("\n\n")[0]
-    assert {target[:2] for target in re.findall(r"\((\d\d_\w+)\.ipynb\)", weeks)} == {path.name[:2] for path in PATHS}
+    assert {target[:2] for target in re.findall(r"\((\d\d_\w+)\.ipynb\)", weeks)} == {path.name[:2]
+                                                                                      for path in PATHS}
     for heading in ("Three paths", "What each notebook teaches", "For instructors"):
         assert f"\n## {heading}\n" in guide
-    for word in ("An afternoon", "Six weeks", "reviewer's path", "How long", "How to grade", "Binder", "hub", "laptop"):
+    for word in ("An afternoon", "Six weeks", "reviewer's path", "How long", "How to grade", "Binder", "hub",
+                 "laptop"):
         assert word in guide
 
 

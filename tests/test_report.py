@@ -64,7 +64,8 @@ def test_the_page_is_sound_and_needs_nothing_else(text, page):
     assert text.startswith("<!DOCTYPE html>\n<html lang=\"en\">") and 'charset="utf-8"' in text
     assert not re.search(r"https?:|<script|<link|url\(", text)
     words = " ".join(page.words)
-    assert "Rashid-1 <on> a mare & back" in words and "First, 5 < 6." in words and "<h1>Rashid-1 &lt;on&gt;" in text
+    assert "Rashid-1 <on> a mare & back" in words and "First, 5 < 6." in words
+    assert "<h1>Rashid-1 &lt;on&gt;" in text
     assert text.count("<p>First, 5 &lt; 6.</p>") == text.count("<p>Second.</p>") == 1
 
 
@@ -111,7 +112,8 @@ def test_demands_are_those_of_the_scenario_with_the_drive_itself_first():
 
 
 def test_the_driver_of_a_demand_is_the_input_that_moves_it_most():
-    asked = replace(MARE, study=Study(constraints=(("total_mass_kg", "<=", 16), ("obstacle_capability_m", ">=", 0.01))))
+    asked = replace(MARE, study=Study(constraints=(("total_mass_kg", "<=", 16), ("obstacle_capability_m",
+                                                                                 ">=", 0.01))))
     mass, obstacle = requirements(RASHID, asked, draws=300)[1:]
     assert obstacle.driver == ""                         # the wheel's radius is not uncertain
     alone = {row["name"]: rdk.intervals(RASHID, asked, draws=300, table=[row]).draws.total_mass_kg.std()
@@ -127,7 +129,8 @@ def test_verdict_and_risks_say_what_the_table_says():
     assert f"“total mass ≤ 16 kg” fails in {100 * (1 - share):.0f} % of the draws" in text
     assert rdk.explain.binding(RASHID, asked, rdk.evaluate(RASHID, asked)).sentence in text
     assert [mark for mark, cells in Page(text).rows if cells[:1] == ["total mass ≤ 16 kg"]] == ["missed"]
-    easy = report(RASHID, replace(MARE, slope_deg=0.0, study=Study(constraints=(("total_mass_kg", "<=", 99),))), "x",
+    easy = report(RASHID, replace(MARE, slope_deg=0.0, study=Study(constraints=(("total_mass_kg", "<=", 99),
+                                                                                ))), "x",
                   draws=100)
     assert "<b>Meets all 2 demands of the mission.</b>" in easy
     assert "Every demand holds in all draws of the uncertain inputs." in easy
@@ -147,7 +150,8 @@ def test_a_rover_that_stalls_or_sinks_still_has_a_page():
     stalled = report(RASHID, replace(MARE, slope_deg=34.0), "x", draws=20)
     assert "Misses" in stalled and "Traction binds" in stalled
     with pytest.warns(UserWarning, match="design outside the class"):
-        sunk = report(replace(RASHID, chassis_mass_kg=900.0), replace(MARE, soil=rdk.soil("apollo-loose")), "x", draws=20)
+        sunk = report(replace(RASHID, chassis_mass_kg=900.0), replace(MARE, soil=rdk.soil("apollo-loose")),
+                      "x", draws=20)
     assert "the rover is buried" in sunk and "NaN" not in " ".join(Page(sunk).words)
 
 
@@ -168,7 +172,8 @@ def test_same_inputs_same_page():
 
 def test_requirement_words_keep_units():
     d = Requirement("minimum_soc", ">=", 0.2, 0.3, 0.2, 0.4, True, 1.0, "")
-    assert d.words == "lowest state of charge ≥ 0.2" and d._replace(metric="sinkage_m", sign="<=").words == "sinkage ≤ 0.2 m"
+    assert d.words == "lowest state of charge ≥ 0.2" and d._replace(metric="sinkage_m",
+                                                                    sign="<=").words == "sinkage ≤ 0.2 m"
 
 
 def test_writing_replaces_the_file_in_one_step(tmp_path, monkeypatch):
@@ -176,7 +181,8 @@ def test_writing_replaces_the_file_in_one_step(tmp_path, monkeypatch):
     assert path.read_text(encoding="utf-8") == "old é"
     assert write("new", str(path)) == path and path.read_text() == "new"
     with pytest.raises(UnicodeEncodeError):
-        write("bad \ud800", path)                        # fails half-way: the old page stays, nothing else does
+        write("bad \ud800",
+              path)                        # fails half-way: the old page stays, nothing else does
     assert path.read_text() == "new" and list(tmp_path.iterdir()) == [path]
     with pytest.raises(FileNotFoundError):
         write("x", tmp_path / "no folder" / "page.html")
