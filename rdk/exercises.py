@@ -14,11 +14,11 @@ from scipy.optimize import least_squares
 
 from . import catalog, power, terramechanics, thermal, validation
 from .course import exercise
-from .design import Design, Model, Scenario, Study
+from .design import DESIGN_SPACE, Design, Model, Scenario, Study
 from .mass import mass_breakdown
 from .mission import evaluate
 from .report import requirements
-from .sampling import random_designs
+from .sampling import attribution, intervals, random_designs
 
 
 @cache
@@ -485,6 +485,79 @@ exercise(
      "heavier than 20 kg": lambda: replace(_rashid(), battery_capacity_wh=500),
      "The avionics power may not change": lambda: replace(_rashid(), avionics_power_w=5.0),
      "no sunlight to spare": lambda: replace(_rashid(), solar_area_m2=0.1)}, judge=_far_at_the_pole)
+
+
+# ---- 06 point design ------------------------------------------------------------------------------------------
+
+_BINDS = ("soil", "traction", "torque", "hub speed", "sun", "battery", "range limit")
+
+
+@cache
+def _polar_slopes():
+    slopes_deg = np.arange(36.0)
+    return slopes_deg, evaluate(_rashid(), replace(catalog.scenario("polar_prospecting"), slope_deg=slopes_deg))
+
+
+def _missed_pct(metric, limit):
+    return 100 * np.mean(getattr(intervals(_rashid(), _mare(), draws=200).draws, metric) < limit)
+
+
+@cache
+def _torque_shares(swapped=False):
+    """What the torque of Yutu-2 gets in its difference to Rashid-1 at the pole, and what it brings alone."""
+    polar, pair = catalog.scenario("polar_prospecting"), (catalog.rover("Yutu-2"), _rashid())
+    large, small = pair[::-1] if swapped else pair
+    shares = attribution(large, small, polar).contributions["range_km"]
+    alone = evaluate(replace(small, peak_wheel_torque_nm=large.peak_wheel_torque_nm), polar)
+    return [shares[list(DESIGN_SPACE).index("peak_wheel_torque_nm")], alone.range_km - evaluate(small, polar).range_km]
+
+
+def _tenacious_mended(design):
+    tenacious = catalog.rover("Tenacious")
+    changed = [name for name in DESIGN_SPACE if getattr(design, name) != getattr(tenacious, name)]
+    if len(changed) > 2:
+        return "You changed " + ", ".join(changed) + "."
+    result = evaluate(design, _mare())
+    if result.stalled:
+        return "It stalls: " + ("the hub is too weak." if result.wheel_torque_nm > design.peak_wheel_torque_nm else "no grip.")
+    if result.total_mass_kg > 11.5:
+        return f"It weighs {result.total_mass_kg:.2f} kg."
+    return "" if result.range_km >= 50 else f"It drives {result.range_km:.0f} km: what binds now?"
+
+
+exercise(
+    "06.1", lambda: "sun", "The bold line at the top of the answers names it.",
+    {"The pack is empty for hours, but more of it would not help: there is nothing to fill it.": lambda: "battery",
+     "It stands still, yet its wheels could climb: look at 'stalled'.": lambda: "traction",
+     "The read-outs show that the hub gives enough.": lambda: "torque"}, choices=_BINDS)
+
+exercise(
+    "06.2", lambda: _first(_polar_slopes()[0], _polar_slopes()[1].stalled), "Move the slope until 'stalled' says yes.",
+    {"That is the slope capability, rounded up; it is taken at slip 0.6, and the rover may slip more.":
+        lambda: np.ceil(_polar_slopes()[1].slope_capability_deg[0]),
+     "There it still drives, if slowly.": lambda: _first(_polar_slopes()[0], _polar_slopes()[1].stalled) - 1},
+    within=0.005)
+
+exercise(
+    "06.3", lambda: _missed_pct("slope_capability_deg", 15), "The share of draws below the limit, times 100.",
+    {"That is the tail of the interval, not the share below the limit.": lambda: 5.0,
+     "Those that make it; the question is about those that miss.":
+        lambda: 100 - _missed_pct("slope_capability_deg", 15),
+     "Those that stall; slope capability is judged at slip 0.6.":
+        lambda: 100 * intervals(_rashid(), _mare(), draws=200).low["stalled"]})
+
+exercise(
+    "06.4", _torque_shares, "The bar of the view 'why', then the change of range when torque alone is changed.",
+    {"From Rashid-1 to Yutu-2, not back: Rashid-1 is the baseline.": lambda: _torque_shares(True),
+     "First the share, then the gain alone.": lambda: _torque_shares()[::-1]}, within=0.03)
+
+exercise(
+    "06.5", lambda: replace(catalog.rover("Tenacious"), wheel_radius_m=0.08, peak_wheel_torque_nm=0.2), "",
+    {"the hub is too weak": lambda: replace(catalog.rover("Tenacious"), wheel_radius_m=0.1),
+     "what binds now": lambda: replace(catalog.rover("Tenacious"), peak_wheel_torque_nm=0.3),
+     "It weighs": lambda: replace(catalog.rover("Tenacious"), wheel_radius_m=0.12, peak_wheel_torque_nm=0.4),
+     "no grip": lambda: replace(catalog.rover("Tenacious"), grouser_height_m=0.0, peak_wheel_torque_nm=0.4),
+     "You changed": lambda: replace(_rashid(), wheel_radius_m=0.08)}, judge=_tenacious_mended)
 
 
 # ---- 08 design rules ------------------------------------------------------------------------------------------

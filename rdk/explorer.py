@@ -11,11 +11,13 @@ import base64
 import contextlib
 import dataclasses
 import html
+import re
 import threading
 import time
 from functools import partial
 
 import numpy as np
+from IPython.display import Image
 from traitlets import TraitError
 
 from . import catalog, explain, keep, pictures
@@ -244,9 +246,14 @@ class Explorer:
     def _repr_mimebundle_(self, **kwargs):
         """The widgets; for readers without a kernel, the read-outs as text and the picture."""
         still = {"text/plain": self.text()}
-        if "base64," in self.controls.picture.value:
-            still["image/png"] = self.controls.picture.value.split("base64,")[1].split('"')[0]
+        if self.image() is not None:
+            still["image/png"] = base64.b64encode(self.image().data).decode()
         return {**self.controls.widget._repr_mimebundle_(**kwargs), **still}
+
+    def image(self):
+        """The picture as it stands, an IPython Image with its alternative text; None where the view has none."""
+        found = re.search(r'alt="([^"]*)" src="data:image/png;base64,([^"]*)"', self.controls.picture.value)
+        return found and Image(base64.b64decode(found[2]), alt=html.unescape(found[1]))
 
     # ---- answers ----------------------------------------------------------------------------------------------
 
