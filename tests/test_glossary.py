@@ -251,6 +251,9 @@ def test_numbered_equations_are_those_of_the_paper(path):
                       if cell.cell_type == "markdown")
     tags = re.findall(r"\\tag\{([^}]*)\}", prose)
     assert len(tags) == len(set(tags)) and set(tags) <= {row[0] for row in TABLES["Equations"]}
+    named = {(row[0], row[1].strip("`")) for row in TABLES["Equations"]}
+    assert set(re.findall(r"Eq\. (\d+) \(`([\w-]+)`\)", prose)) <= named
+    assert {name for name in re.findall(r"\beq\. ([a-z]+(?:-[a-z]+)*)", prose)} <= {name for _, name in named}
 
 
 @pytest.mark.parametrize("word, meaning, notebooks", [row[:3] for row in TABLES["Words"]])
