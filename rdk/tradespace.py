@@ -35,7 +35,7 @@ HYPERVOLUME_REFERENCE = 1.05                             # in every scaled objec
 
 @dataclasses.dataclass(frozen=True)
 class Front:
-    """Non-dominated designs of a search, by rising mass.
+    """Non-dominated designs of a search, by rising mass; of designs alike in every objective, one.
 
     Attributes
     ----------
@@ -222,7 +222,9 @@ def search(scenario, population=50, generations=60, seed=None, objectives=None, 
 
     def so_far(message=""):
         best = [i for i in algorithm.opt if np.all(i.feas)] if algorithm.opt is not None else []
-        genes = np.array([i.X for i in best]).reshape(-1, len(DESIGN_SPACE))
+        # of designs alike in every objective keep one: the last bits would let it dominate its twins
+        _, first = np.unique(np.array([i.F for i in best]).reshape(-1, len(study.objectives)), axis=0, return_index=True)
+        genes = np.array([best[i].X for i in np.sort(first)]).reshape(-1, len(DESIGN_SPACE))
         designs = decode(genes, bounds)
         performance = evaluate(designs, scenario, model)
         designs = designs[np.lexsort((performance.range_km, performance.total_mass_kg))]

@@ -5,6 +5,8 @@ import json
 import math
 import multiprocessing
 import os
+import platform
+import subprocess
 import sys
 import warnings
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -116,6 +118,32 @@ def test_same_seed_same_bits_whatever_the_global_generator_does(small):
     np.testing.assert_array_equal(np.random.get_state()[1], state)
     other = rdk.pareto_front(MARE, **(SMALL | {"seed": 4}))
     assert other.history[-1] != small.history[-1]
+
+
+PORTABLE = """
+import rdk
+for seed in 12, 13:
+    front = rdk.pareto_front(rdk.scenario("polar_prospecting"), generations=30, seed=seed)
+    print([f"{x:.6f}" for x in front.history], front.designs.wheelbase_m.round(6).tolist())
+"""
+
+
+@pytest.mark.skipif(platform.machine().lower() not in ("x86_64", "amd64"), reason="the names are those of x86-64")
+def test_a_front_does_not_hang_on_the_last_bits_of_a_processor():
+    # the widest vector instructions, under the names that different releases of NumPy give them; without them sines
+    # and exponentials differ in their last bits, and so would the ranks of designs that tie
+    widest = "X86_V4 AVX512_ICL AVX512_SPR AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL"
+    printed = [subprocess.run([sys.executable, "-W", "ignore", "-c", PORTABLE], env=os.environ | more, text=True,
+                              capture_output=True, check=True).stdout
+               for more in ({}, {"NPY_DISABLE_CPU_FEATURES": widest})]
+    assert printed[0] == printed[1] and printed[0].count("]") == 4
+
+
+def test_of_designs_alike_in_every_objective_a_front_has_one():
+    twins = replace(RASHID, wheelbase_m=[0.4, 0.6, 0.8])        # no model reads the wheelbase
+    front = rdk.pareto_front(MARE, population=4, generations=1, seed=1, start=twins)
+    rashid = rdk.evaluate(RASHID, MARE).total_mass_kg
+    assert np.isclose(front.performance.total_mass_kg, rashid, rtol=1e-9).sum() == 1
 
 
 def test_the_seed_of_the_study_is_the_default():
