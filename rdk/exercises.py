@@ -635,6 +635,62 @@ exercise(
     judge=_presses_softly)
 
 
+# ---- 09 sensitivity -------------------------------------------------------------------------------------------
+
+exercise(
+    "09.1", lambda: np.tan(np.radians(35)) / np.tan(np.radians(46)),
+    "The normal stress is the same; only the tangent of the friction angle changes.",
+    {"Strength goes with the tangent of the angle, not with the angle.": lambda: 35 / 46,
+     "The other way round: from the larger angle to the smaller.":
+        lambda: np.tan(np.radians(46)) / np.tan(np.radians(35)),
+     "Degrees went into a function that takes radians.": lambda: np.tan(35) / np.tan(46),
+     "The tangent, not the sine.": lambda: np.sin(np.radians(35)) / np.sin(np.radians(46))}, within=0.005)
+
+exercise(
+    "09.2", lambda: 0.9**17, "All of them must be inside: multiply.",
+    {"That is the chance of one.": lambda: 0.9, "That is the chance that at least one is outside.": lambda: 1 - 0.9**17,
+     "That is the chance that all are outside.": lambda: 0.1**17}, within=0.02)
+
+
+def _capabilities(*angles_deg):
+    """Slope capability of Rashid-1 on the mare at friction angles."""
+    soil = replace(_mare().soil, friction_angle_deg=np.array(angles_deg, float))
+    return evaluate(_rashid(), replace(_mare(), soil=soil)).slope_capability_deg
+
+
+exercise(
+    "09.3", lambda: _capabilities(46, 35, 41), "Replace the friction angle in the scenario's soil and read slope_capability_deg.",
+    {"In the order of the question, not by size.": lambda: _capabilities(35, 41, 46),
+     "Not in proportion to the angle, nor to its tangent: pull is grip less resistance.":
+        lambda: _capabilities(46) * np.tan(np.radians([46, 35, 41])) / np.tan(np.radians(46))}, within=0.01)
+
+
+def _climbs_on_35(design):
+    """What the design of exercise 09.4 still misses, or ""."""
+    scenario = replace(_mare(), soil=catalog.soil("sourcebook-trafficability"))
+    p = evaluate(design, scenario)
+    if p.total_mass_kg > 15:
+        return f"It weighs {p.total_mass_kg:.1f} kg."
+    if not p.feasible:
+        return "It does not drive the mission itself on that soil: " + ("it stalls." if p.stalled else "too little sun.")
+    low = intervals(design, scenario, level=0.8).low["slope_capability_deg"]
+    return "" if low >= 14 else f"Nine of ten draws climb {low:.1f} degrees only: too little margin."
+
+
+def _climber():
+    return Design(wheel_radius_m=0.2, wheel_width_m=0.035, grouser_height_m=0.02, grouser_count=24, wheel_count=4,
+                  chassis_mass_kg=1.5, wheelbase_m=0.6, solar_area_m2=0.15, battery_capacity_wh=20,
+                  avionics_power_w=6, peak_wheel_torque_nm=2.0)
+
+
+exercise(
+    "09.4", _climber, "",
+    {"It weighs": lambda: replace(_climber(), chassis_mass_kg=5.0),
+     "it stalls": lambda: replace(_climber(), peak_wheel_torque_nm=0.1),
+     "too little sun": lambda: replace(_climber(), avionics_power_w=32.0),
+     "too little margin": lambda: replace(_climber(), grouser_count=20)}, judge=_climbs_on_35)
+
+
 # ---- 12 design your rover -------------------------------------------------------------------------------------
 
 SWIRL = Scenario(
