@@ -22,7 +22,7 @@ import numpy as np
 import scalar_transcription as scalar
 
 import rdk
-from rdk import contact
+from rdk import contact, tradespace
 
 SIZES = {1: 40, 50: 30, 2_000: 6, 100_000: 1}            # designs in a population: repetitions
 SCENARIOS = rdk.scenario_names("canonical")
@@ -131,6 +131,41 @@ def fixed_and_hourly():
         print(f"  {label:24}{fixed:>9.4f} ms + {1e3 * hourly:.4f} us an hour")
 
 
+def trade_space():
+    """Processor time of fronts, intervals and an attribution, and of pymoo where evaluation costs nothing."""
+    mare, rashid = rdk.scenario("equatorial_mare_traverse"), rdk.rover("Rashid-1")
+    rdk.pareto_front(mare, population=4, generations=1)                     # warm up: imports
+    print(f"\n{'a front of 50 x 60':28}{'s':>8}{'scalar, 3,000':>16}{'ratio':>8}")
+    ratios = []
+    for name in SCENARIOS:
+        scenario, times = rdk.scenario(name), []
+        for seed in range(3):                            # turn about, so that both see the same machine
+            others = rdk.random_designs(10, seed=seed)
+            scalar_s = 3 * statistics.fmean(milliseconds(scalar.evaluate, other.numbers(), transcribed(scenario))
+                                            for other in others)
+            times.append((milliseconds(lambda: rdk.pareto_front(scenario, seed=seed)) / 1e3, scalar_s))
+        ours, theirs = (statistics.median(column) for column in zip(*times))
+        ratios.append(theirs / ours)
+        print(f"{name:28}{ours:>8.2f}{theirs:>16.1f}{ratios[-1]:>8.0f}")
+    print(f"{'median ratio':28}{statistics.median(ratios):>32.0f}")
+
+    known = rdk.evaluate(rdk.random_designs(50, seed=0), mare)
+    kept = tradespace.evaluate
+    tradespace.evaluate = lambda designs, *rest: known[:len(designs)]       # the same answer for every generation
+    try:
+        free = milliseconds(lambda: rdk.pareto_front(mare, seed=0))
+    finally:
+        tradespace.evaluate = kept
+    print(f"pymoo and decoding in it: {free / 1e3:.2f} s")
+    scenarios = [rdk.scenario(name) for name in SCENARIOS]
+    for label, run in (("study of the four scenarios", lambda: rdk.study(scenarios)),
+                       ("intervals, 500 draws", lambda: rdk.intervals(rashid, mare)),
+                       ("attribution, 2,048 mixtures",
+                        lambda: rdk.attribution(rashid, rdk.rover("Tenacious"), mare))):
+        run()
+        print(f"{label}: {statistics.median(milliseconds(run) for _ in range(3)):.0f} ms")
+
+
 def import_time():
     """Median processor time to import rdk in a fresh interpreter, and of numpy alone."""
     for module in "numpy", "rdk":
@@ -147,5 +182,6 @@ if __name__ == "__main__":
     memory()
     kernel_evaluations()
     fixed_and_hourly()
+    trade_space()
     print()
     import_time()
