@@ -1702,8 +1702,9 @@ def front_points(panels, x_label, y_label, lines=None):
                     markerfacecolor="none" if i else None, label=label)
         for name, value in (lines or {}).items():
             ax.axhline(value, color=GREY, linestyle=":", lw=1.2)
-            ax.annotate(name, (0.99, value), xycoords=("axes fraction", "data"), xytext=(0, 2),
+            ax.annotate(name, (0.99, value), xycoords=("axes fraction", "data"), xytext=(0, -3), va="top",
                         textcoords="offset points", ha="right", fontsize=8, color=GREY)
+        ax.margins(y=0.12)
         ax.set_title(title, fontsize=10)
     for ax in axes[-1]:
         ax.set_xlabel(x_label)
@@ -1987,14 +1988,14 @@ def distance_by_patience(found, baselines):
         rows = found[found.rover == name]
         ax.plot(rows.generations, rows.distance, color=BLUE, marker="o")
         ax.axhline(baselines.set_index("rover").nearest_capped[name], color=BLACK, linestyle="--", lw=1)
-        ax.set(title=name, xscale="log", ylim=(0, None))
+        ax.set(title=name, xscale="log")
         ax.set_xticks(rows.generations, [str(g) for g in rows.generations])
         ax.minorticks_off()
         ax.title.set_size(10)
     for ax in axes[-1]:
         ax.set_xlabel("generations")
     for ax in axes[:, 0]:
-        ax.set_ylabel("distance")
+        ax.set(ylabel="distance", ylim=(0, 1.05 * found.distance.max()))
     return figure
 
 

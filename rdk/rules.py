@@ -541,5 +541,12 @@ def _lighter_than(target, count, seed):
         bounds[name] = (DESIGN_SPACE[name].low, float(highest))
     six = mass_of(Design(**low | {"wheel_count": 6}), target.scenario, Model()).total_kg <= target.ceiling_kg
     bounds["wheel_count"] = (4, 6 if six else 4)
-    designs = random_designs(20 * count, seed, bounds)
-    return designs[mass_of(designs, target.scenario, Model()).total_kg <= target.ceiling_kg][:count]
+    found, total = [], 0
+    for block in range(50):                              # few designs are as light as the lightest rovers
+        designs = random_designs(100_000, (seed, block), bounds)
+        found.append(designs[mass_of(designs, target.scenario, Model()).total_kg <= target.ceiling_kg])
+        total += len(found[-1])
+        if total >= count:
+            break
+    joined = {name: np.concatenate([getattr(designs, name) for designs in found]) for name in DESIGN_SPACE}
+    return Design(**joined)[:count]
