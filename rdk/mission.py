@@ -344,6 +344,11 @@ def _solar_duty(solar, base_load, mobility, duty):
     return np.clip((solar - base_load) / np.where(mobility > 0, mobility, np.inf), 0.0, duty)
 
 
+def _above_rounding(power_w):
+    """Power in W, 0 where it is negative or a rounding error of a difference of watts."""
+    return np.where(power_w > 1e-9, power_w, 0.0)
+
+
 def _log(lane, times, steps, solar, base_load, mobility, stored, initial, throttled, speed_km_h):
     """The march of one design as a TraverseLog."""
     solar, mobility, stored, throttled, speed_km_h = (
@@ -357,6 +362,6 @@ def _log(lane, times, steps, solar, base_load, mobility, stored, initial, thrott
     return TraverseLog(
         time_h=times, step_h=steps, sun_elevation_deg=elevation, solar_w=solar, load_w=load, mobility_w=mobility,
         stored_wh=stored, soc=stored / lane["battery_capacity_wh"], throttled=throttled,
-        discarded_w=np.maximum(net - accepted, 0), unserved_w=np.maximum(-net - delivered, 0),
+        discarded_w=_above_rounding(net - accepted), unserved_w=_above_rounding(-net - delivered),
         battery_loss_w=accepted - np.maximum(change, 0) + np.maximum(-change, 0) - delivered,
         distance_km=np.minimum(np.cumsum(speed_km_h * steps), lane["traverse_limit_km"]))
