@@ -186,8 +186,8 @@ def panel_power_w(time_h, design, scenario, model=MODEL):
     latitude, tilt = radians(scenario["latitude_deg"]), radians(scenario["panel_tilt_deg"])
     hour_angle = 2.0 * pi * time_h / model["lunar_day_h"] - pi / 2.0
     sin_e = cos(latitude) * cos(hour_angle)
-    if sin_e <= 0.0:
-        return 0.0                                   # sun at or below the horizon
+    if sin_e <= 1e-12:                               # cos(90 deg) is 6e-17 in floats: the sun rises at 0
+        return 0.0
     azimuth = atan2(-sin(hour_angle), -sin(latitude) * cos(hour_angle))  # clockwise from north, towards east
     cos_i = (sin_e * cos(tilt) + sqrt(1.0 - sin_e**2) * sin(tilt)
              * cos(azimuth - radians(scenario["panel_azimuth_deg"])))

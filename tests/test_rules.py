@@ -195,7 +195,8 @@ def test_sobol_over_uncertainties_knows_what_moves_what():
     names = [row["name"] for row in catalog.rows("uncertainties.csv")]
     assert set(table.input) == set(names) and len(table) == 3 * len(names)
     slope = table.query("metric == 'slope_capability_deg'").set_index("input").total_order
-    assert slope.idxmax() == "shear_scale" and slope["dust_factor"] == 0
+    # the array does not touch the wheel: what is left is rounding
+    assert slope.idxmax() == "shear_scale" and abs(slope["dust_factor"]) < 1e-12
     again = rules.sobol(MARE, design=rdk.rover("Rashid-1"), count=256)
     assert again.equals(table), "same seed, same bits"
 
