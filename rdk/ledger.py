@@ -38,6 +38,12 @@ class Searches:
     def __init__(self, executor=None, seed_offset=0):
         self.executor, self.seed_offset = executor, seed_offset
 
+    def run(self):
+        """Compute all studies now, one after the other; yields the name of each as it is done."""
+        for name in ("canonical", "scaled", "crossover", "budget", "rediscovery", "baselines"):
+            getattr(self, name)
+            yield name
+
     def _study(self, **options):
         """Fronts of the four canonical scenarios, each with its own seed."""
         fronts = {}

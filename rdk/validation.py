@@ -467,8 +467,9 @@ def _row(*ids):
 class _Evidence:
     """The tables behind the ledger, each computed once when first needed."""
 
-    def __init__(self, executor=None, seed_offset=0):
-        self.executor, self.seed_offset = executor, seed_offset
+    def __init__(self, searches=None):
+        if searches is not None:
+            self.searches = searches
 
     @functools.cached_property
     def single_wheel(self):
@@ -489,7 +490,7 @@ class _Evidence:
     @functools.cached_property
     def searches(self):
         from .ledger import Searches                     # loads pymoo
-        return Searches(self.executor, self.seed_offset)
+        return Searches()
 
 
 _ROVERS = {"tenacious": "Tenacious", "cadre": "CADRE-unit", "rashid": "Rashid-1", "sojourner": "Sojourner",
@@ -631,7 +632,7 @@ def accepts(accept, value):
     return bool(np.all(inside))
 
 
-def paper_ledger(kinds=("deterministic", "stochastic", "cost"), executor=None, seed_offset=0):
+def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None):
     """Every number that the paper reports beside ours, computed afresh.
 
     Parameters
@@ -639,10 +640,8 @@ def paper_ledger(kinds=("deterministic", "stochastic", "cost"), executor=None, s
     kinds : sequence of str
         Which rows of `paper_targets.csv`: "deterministic", "stochastic" (numbers that a search's seed moves) or
         "cost" (timings: they differ from run to run).
-    executor : concurrent.futures.Executor, optional
-        Runs the searches in parallel, with the same result.
-    seed_offset : int
-        Added to the paper's seeds, to see what chance does to the stochastic rows.
+    searches : rdk.ledger.Searches, optional
+        The studies behind the stochastic rows: with an executor, with other seeds, or computed already.
 
     Returns
     -------
@@ -668,7 +667,7 @@ def paper_ledger(kinds=("deterministic", "stochastic", "cost"), executor=None, s
     missing = [name for name in targets.id if name not in _LEDGER]
     if missing:
         raise NotImplementedError("no computation for the ledger rows " + ", ".join(missing))
-    evidence, rows = _Evidence(executor, seed_offset), []
+    evidence, rows = _Evidence(searches), []
     for target in targets.itertuples():
         found = _LEDGER[target.id](evidence)
         ours, why = found if isinstance(found, tuple) and isinstance(found[-1], str) else (found, "")
