@@ -562,6 +562,80 @@ exercise(
      "You changed": lambda: replace(_rashid(), wheel_radius_m=0.08)}, judge=_tenacious_mended)
 
 
+# ---- 07 Pareto fronts ---------------------------------------------------------------------------------------
+
+@cache
+def _front(scenario="equatorial_mare_traverse", seed=13, six=False, goals=None, least_slope_deg=None):
+    """A front of the notebook's budget."""
+    return pareto_front(
+        catalog.scenario(scenario), seed=seed, bounds={"wheel_count": (6, 6)} if six else None,
+        objectives=dict(goals) if goals else None,
+        constraints=[("slope_capability_deg", ">=", least_slope_deg)] if least_slope_deg else None)
+
+
+def _mass_at(front, slope_deg=34):
+    p = front.performance
+    order = np.argsort(p.slope_capability_deg)
+    return np.interp(slope_deg, p.slope_capability_deg[order], p.total_mass_kg[order])
+
+
+@cache
+def _late_polar():
+    """Lightest mass and median battery when five polar fronts are merged and searched on."""
+    five = [_front("polar_prospecting", seed).designs for seed in (12, 13, 14, 15, 112)]
+    merged = Design(**{name: np.concatenate([getattr(design, name) for design in five]) for name in DESIGN_SPACE})
+    late = pareto_front(catalog.scenario("polar_prospecting"), population=80, seed=1, start=merged)
+    return [late.performance.total_mass_kg.min(), np.median(late.designs.battery_capacity_wh)]
+
+
+def _settled(answer):
+    lightest_kg, battery_wh = answer
+    if not 8 < lightest_kg < 10.5:
+        return "The first number should be the mass of the lightest design, in kg; the merged search goes below every single one."
+    return "" if 5 <= battery_wh < 75 else (
+        "The second number should be the median battery after the long search; it has not come down yet.")
+
+
+_FLOAT = (("range_km", "max"), ("total_mass_kg", "min"), ("sinkage_m", "min"))
+
+
+def _floaters(goals=_FLOAT):
+    """Mass of the heaviest design, in kg, and width of the widest wheel, in mm."""
+    front = _front(goals=goals, least_slope_deg=25)
+    return [front.performance.total_mass_kg.max(), 1000 * front.designs.wheel_width_m.max()]
+
+
+exercise(
+    "07.1", lambda: 85 - _mare().traverse_limit_km, "Read the message: it says how close the nearest design came.",
+    {"So far the nearest design came; by how much did it miss?": lambda: _mare().traverse_limit_km,
+     "That is what you asked for.": lambda: 85.0,
+     "No design meets the demand; the question is by how much the nearest missed it.": lambda: 0.0}, within=0.001)
+
+exercise(
+    "07.2", lambda: _front().history[-1], "The share of the darts that land in the dominated part, times the box.",
+    {"That is the share of the darts; the box is larger than 1.": lambda: _front().history[-1] / 1.05**3,
+     "That is the part of the box that is not dominated.": lambda: 1.05**3 - _front().history[-1]}, within=0.03)
+
+exercise(
+    "07.3", lambda: [_mass_at(_front()), _mass_at(_front(six=True))],
+    "Sort each front by slope capability and interpolate its mass at 34 deg.",
+    {"Those are the lightest of each front; they do not climb alike.":
+        lambda: [_front().performance.total_mass_kg.min(), _front(six=True).performance.total_mass_kg.min()],
+     "The other way round: first four wheels, then six.":
+        lambda: [_mass_at(_front(six=True)), _mass_at(_front())]}, within=0.1)
+
+exercise(
+    "07.4", _late_polar, "",
+    {"the mass of the lightest design": lambda: [12.0, 6.0],
+     "it has not come down yet": lambda: [9.5, 150.0]}, judge=_settled)
+
+exercise(
+    "07.5", _floaters, "Objectives range, mass and sinkage; the slope is a constraint now.",
+    {"That is the front with slope capability as an objective: ballast buys slope, and narrow wheels press hard.":
+        lambda: _floaters((("range_km", "max"), ("total_mass_kg", "min"), ("slope_capability_deg", "max"))),
+     "First the mass, then the width.": lambda: _floaters()[::-1]}, within=0.15)
+
+
 # ---- 08 design rules ------------------------------------------------------------------------------------------
 
 _NIGHT_WH = 13.0 * Model().synodic_day_h / 2             # avionics and payload through half a lunar day
