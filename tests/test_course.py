@@ -167,7 +167,9 @@ def test_no_notebook_has_exercises_that_the_registry_lacks():
 @pytest.mark.parametrize("number", sorted(TASKS))
 def test_each_exercise_has_a_hint_a_place_for_the_answer_and_a_checked_solution(number):
     _, (text, *cells) = exercises_of(PATHS[number[:2]])[number]
-    assert re.search(r"<details><summary>Hint</summary>.+</details>", text.source, re.S), "a collapsed hint"
+    hint = re.search(r"<details><summary>Hint</summary>(.+)</details>", text.source, re.S)
+    assert hint, "a collapsed hint"
+    assert not re.search(r"`|\$|\*\w|\]\(", hint[1]), "no Markdown inside HTML: it would show as it stands"
     open_cells = [cell for cell in cells if cell.cell_type == "code"
                   and "solution" not in cell.metadata.get("tags", [])]
     solutions = [cell for cell in cells if "solution" in cell.metadata.get("tags", [])]
