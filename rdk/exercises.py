@@ -1,7 +1,7 @@
 """The exercises of the notebooks: how each is answered, which mistakes are typical, and what to say to them.
 
-One block an exercise, grouped by notebook. Answers are computed here, independently of the notebooks; nothing is
-stored. A hint names what went wrong and does not give the answer away.
+One block an exercise, grouped by notebook. Answers are computed here, independently of the notebooks; nothing
+is stored. A hint names what went wrong and does not give the answer away.
 """
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _first(values, flags):
     return values[np.argmax(flags)]
 
 
-# ---- 00 start here --------------------------------------------------------------------------------------------
+# ---- 00 start here -----------------------------------------------------------------------------------------
 
 def _drive_highland(**changes):
     """How many of the six rovers drive the highland mission, with some of it changed."""
@@ -104,23 +104,27 @@ exercise(
     {"That is the payload alone. The chassis grows too.": lambda: 1.0,
      "One round of the loop is not enough: the chassis grows again for what it has grown.":
         lambda: 1 + _structure_share() * _bus_factor(),
-     "A kilogram of chassis makes more than a kilogram of rover: harness, thermal control and growth come on top.":
+     "A kilogram of chassis makes more than a kilogram of rover: overheads and growth come on top.":
         lambda: 1 / (1 - _structure_share())}, within=0.005)
 
 exercise(
-    "00.4", lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.12, wheel_width_m=0.10, grouser_count=20,
+    "00.4", lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.12, wheel_width_m=0.10,
+                            grouser_count=20,
                             grouser_height_m=0.015, peak_wheel_torque_nm=0.4), "",
     {"for want of grip": lambda: replace(catalog.rover("CADRE-unit"), peak_wheel_torque_nm=5.0),
-     "the hub is too weak": lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.12, wheel_width_m=0.10,
+     "the hub is too weak": lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.12,
+                                            wheel_width_m=0.10,
                                             grouser_count=20, peak_wheel_torque_nm=0.1),
      "Only wheels and hubs may change; chassis_mass_kg did": lambda: replace(catalog.rover("CADRE-unit"),
                                                                              chassis_mass_kg=1.0),
-     "weighs 15 kg or more": lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.18, wheel_width_m=0.20,
-                                             grouser_count=20, grouser_height_m=0.015, peak_wheel_torque_nm=2.0)},
+     "weighs 15 kg or more": lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.18,
+                                             wheel_width_m=0.20,
+                                             grouser_count=20, grouser_height_m=0.015,
+                                             peak_wheel_torque_nm=2.0)},
     judge=_climbs_highland)
 
 
-# ---- 01 wheel on soil -----------------------------------------------------------------------------------------
+# ---- 01 wheel on soil --------------------------------------------------------------------------------------
 
 _LOAD_N = 16 * 1.625 / 4                                 # on one wheel of the notebook's rover
 
@@ -143,12 +147,13 @@ def _best(ideal=False):
 
 
 def _pull_error_ppm(points=100, n=1.1):
-    """Relative error of the trapezoidal rule's pull at an entry angle of 0.35 rad and slip 0.2, in millionths."""
+    """Relative error of the trapezoidal rule's pull at an entry angle of 0.35 rad and slip 0.2, times 1e6."""
     soil = replace(catalog.soil("apollo-nominal"), sinkage_exponent=n)
 
     def pull(angle):
         stress = terramechanics.contact_stress(_ribbed(), soil, 0.35, 0.2, angle)
-        return trapezoid(stress.shear_stress_pa * np.cos(angle) - stress.normal_stress_pa * np.sin(angle), angle)
+        return trapezoid(stress.shear_stress_pa * np.cos(angle) - stress.normal_stress_pa * np.sin(angle),
+                         angle)
 
     middle = (0.4 + 0.2 * 0.2) * 0.35
     exact = sum(pull(np.linspace(a, b, 200_001)) for a, b in ((0, middle), (middle, 0.35)))
@@ -165,7 +170,8 @@ def _radius_mm(height_m, count, soil):
 
 exercise(
     "01.1", lambda: 2 ** (2 / 3), "Section 10 has the power law: how does the sinkage depend on the load?",
-    {"That would be proportion: twice the load, twice the rut. Sinkage is a weaker power of the load.": lambda: 2.0,
+    {"That would be proportion: twice the load, twice the rut. Sinkage is a weaker power of the load.":
+        lambda: 2.0,
      "The exponent is upside down.": lambda: 2 ** (3 / 2),
      "That is the exponent; raise the ratio of the loads to it.": lambda: 2 / 3,
      "By so much it stands deeper; the question asks for the ratio.": lambda: 2 ** (2 / 3) - 1}, within=0.005)
@@ -187,26 +193,28 @@ exercise(
 
 exercise(
     "01.4", _pull_error_ppm,
-    "Take the pull with the trapezoid and 100 points, and with 200 Gauss points on each arc; n is 1.1 in both.",
+    "Take the pull with the trapezoid and 100 points, and with 200 Gauss points on each arc; n is 1.1 twice.",
     {"That is the error with the exponent of the notebook's soil: set n to 1.1 for both rules.":
         lambda: _pull_error_ppm(n=1.0),
      "That is the trapezoid with 101 points, that is with 100 intervals; the paper's has 100 points.":
         lambda: _pull_error_ppm(101)}, within=0.005)
 
 exercise(
-    "01.5", lambda: [_radius_mm(0.015, 14, "sourcebook-trafficability"), _radius_mm(0.020, 24, "sourcebook-trafficability"),
+    "01.5", lambda: [_radius_mm(0.015, 14, "sourcebook-trafficability"),
+                     _radius_mm(0.020, 24, "sourcebook-trafficability"),
                      _radius_mm(0.015, 14, "apollo-nominal")],
-    "Evaluate the slope capability for an array of radii and take the first that reaches 16 deg; change one thing at a time.",
+    "Evaluate the slope capability for an array of radii and take the first that reaches 16 deg.",
     {"The first two are with the friction angle of 46 deg; the question asks for the Sourcebook's there.":
         lambda: [_radius_mm(0.015, 14, "apollo-nominal"), _radius_mm(0.020, 24, "apollo-nominal"),
                  _radius_mm(0.015, 14, "apollo-nominal")],
      "The other way round: first 14 grousers of 15 mm, then 24 of 20 mm.":
-        lambda: [_radius_mm(0.020, 24, "sourcebook-trafficability"), _radius_mm(0.015, 14, "sourcebook-trafficability"),
+        lambda: [_radius_mm(0.020, 24, "sourcebook-trafficability"),
+                 _radius_mm(0.015, 14, "sourcebook-trafficability"),
                  _radius_mm(0.015, 14, "apollo-nominal")]},
     within=0.02)
 
 
-# ---- 02 wheel measurements ------------------------------------------------------------------------------------
+# ---- 02 wheel measurements ---------------------------------------------------------------------------------
 
 @cache
 def _factor_of_shift(shift_pct, low, high):
@@ -239,30 +247,41 @@ def _digging(wheel):
 
 
 exercise(
-    "02.1", lambda: [25.0, 10.0, 1.0, 4.0], "An error is model less measured; divide it by the measured pull, or by the load.",
+    "02.1", lambda: [25.0, 10.0, 1.0, 4.0],
+    "An error is model less measured; divide it by the measured pull, or by the load.",
     {"You divided by the model's pull; divide by the measured one.": lambda: [20.0, 100 / 11, 1.0, 4.0],
-     "The last two are the errors in newtons of a load of 100 N; the load is 50 N.": lambda: [25.0, 10.0, 0.5, 2.0]})
+     "The last two are the errors in newtons of a load of 100 N; the load is 50 N.":
+        lambda: [25.0, 10.0, 0.5, 2.0]})
 
 exercise(
     "02.2", lambda: _factor_of_shift(27.0, 0.80, 0.95), "A finer list of factors between 0.85 and 0.9.",
-    {"That is the factor above 1; the question asks for the one below.": lambda: _factor_of_shift(27.0, 1.05, 1.20),
-     "Pull is grip less resistance: it does not shrink in proportion to the shear stress, but faster.": lambda: 0.73,
-     "That is the paper's factor. It moves the pull by a little more than the error.": lambda: 0.85}, within=0.004)
+    {"That is the factor above 1; the question asks for the one below.":
+        lambda: _factor_of_shift(27.0, 1.05, 1.20),
+     "Pull is grip less resistance: it does not shrink in proportion to the shear stress, but faster.":
+        lambda: 0.73,
+     "That is the paper's factor. It moves the pull by a little more than the error.": lambda: 0.85},
+    within=0.004)
 
 exercise(
-    "02.3", lambda: float(np.subtract(*_reading_interval(1.0)[::-1])), "`high_pct` less `low_pct` of Ding's row.",
+    "02.3", lambda: float(np.subtract(*_reading_interval(1.0)[::-1])),
+    "`high_pct` less `low_pct` of Ding's row.",
     {"That is the upper end of the interval; its width is asked for.": lambda: _reading_interval(1.0)[1],
-     "That is the interval for a reading error of 0.5 N.": lambda: float(np.subtract(*_reading_interval(0.5)[::-1])),
-     "That is the interval for a reading error of 2 N.": lambda: float(np.subtract(*_reading_interval(2.0)[::-1]))}, within=0.03)
+     "That is the interval for a reading error of 0.5 N.":
+        lambda: float(np.subtract(*_reading_interval(0.5)[::-1])),
+     "That is the interval for a reading error of 2 N.":
+        lambda: float(np.subtract(*_reading_interval(2.0)[::-1]))},
+    within=0.03)
 
 exercise(
     "02.4", lambda: _digging("smooth"), "Fit the sinkage, in mm, at the points of the smooth wheel only.",
-    {"That fits both wheels at once. Fit the smooth one, then predict the other.": lambda: _digging("smooth|grousered"),
+    {"That fits both wheels at once. Fit the smooth one, then predict the other.":
+        lambda: _digging("smooth|grousered"),
      "That fits the grousered wheel. Fit the smooth one.": lambda: _digging("grousered"),
-     "First the exponent at slip 0, then its growth with slip.": lambda: _digging("smooth")[::-1]}, within=0.03)
+     "First the exponent at slip 0, then its growth with slip.": lambda: _digging("smooth")[::-1]},
+    within=0.03)
 
 
-# ---- 03 mass --------------------------------------------------------------------------------------------------
+# ---- 03 mass -----------------------------------------------------------------------------------------------
 
 def _bus_kg(**changes):
     """Mass of Rashid-1's design with 1.5 kg of payload and some of it changed."""
@@ -285,7 +304,7 @@ def _left_out(statistic="median", size=abs):
 
 @cache
 def _fitted():
-    """Median error of the five rovers with the best factor on the bus, and with factors fitted on the other four."""
+    """Median error of the five rovers with the best factor on the bus, and with factors fitted on four."""
     table = _class()
     bus = (table.predicted_mass_kg - table.payload_kg).to_numpy()
     factor = np.linspace(0.8, 1.2, 801)[:, None]
@@ -298,7 +317,8 @@ def _chassis_saving(linkage=True, share=True):
     """How much lighter the chassis must be when two wheels, two motors and the linkage come on."""
     model, four = Model(), _bus_kg()
     extra = (four.wheels_kg + four.motors_kg) / 2 + model.linkage_base_mass_kg * linkage
-    return _rashid().chassis_mass_kg - (_rashid().chassis_mass_kg - extra) / (1 + model.linkage_chassis_fraction * share)
+    chassis = _rashid().chassis_mass_kg
+    return chassis - (chassis - extra) / (1 + model.linkage_chassis_fraction * share)
 
 
 def _room_wh(gross=True):
@@ -307,13 +327,15 @@ def _room_wh(gross=True):
 
 
 exercise(
-    "03.1", lambda: [200.0, 200 * _bus_factor()], "Section 2: on what are cables, insulation and growth charged?",
+    "03.1", lambda: [200.0, 200 * _bus_factor()],
+    "Section 2: on what are cables, insulation and growth charged?",
     {"Harness, thermal control and growth are fractions of the hardware: saving hardware saves them too.":
         lambda: [200.0, 200.0],
      "The payload is added after growth: it saves itself and nothing else.":
         lambda: [200 * _bus_factor(), 200 * _bus_factor()],
      "The other way round: first the payload, then the chassis.": lambda: [200 * _bus_factor(), 200.0],
-     "Growth is not all: harness and thermal control are charged as well.": lambda: [200.0, 240.0]}, within=0.005)
+     "Growth is not all: harness and thermal control are charged as well.": lambda: [200.0, 240.0]},
+    within=0.005)
 
 exercise(
     "03.2", _left_out, "Absolute errors of the five, without one; the median of four; five times.",
@@ -326,21 +348,24 @@ exercise(
     {"That is the chassis which is left; the question asks by how much it is lighter.":
         lambda: _rashid().chassis_mass_kg - _chassis_saving(),
      "Six wheels need a linkage, too.": lambda: _chassis_saving(linkage=False, share=False),
-     "The linkage has a second part, in proportion to the chassis.": lambda: _chassis_saving(share=False)}, within=0.005)
+     "The linkage has a second part, in proportion to the chassis.": lambda: _chassis_saving(share=False)},
+    within=0.005)
 
 exercise(
-    "03.4", _fitted, "One factor times (predicted less payload), plus payload; then the same with one rover left out.",
+    "03.4", _fitted,
+    "One factor times (predicted less payload), plus payload; then the same with one rover left out.",
     {"The second must come from rovers that the fit has not seen.": lambda: [_fitted()[0], _fitted()[0]],
      "That is the error as published, without any fit.": lambda: [_class().error_pct.abs().median()] * 2,
      "First the error of the fit, then that of the unseen rovers.": lambda: _fitted()[::-1]}, within=0.1)
 
 exercise(
     "03.5", _room_wh, "What is left of 13.5 kg, divided by what a watt-hour costs with its overheads.",
-    {"A watt-hour costs more than its cells: harness, thermal control and growth come on top.": lambda: _room_wh(False),
+    {"A watt-hour costs more than its cells: harness, thermal control and growth come on top.":
+        lambda: _room_wh(False),
      "The other way round: first 0.2 m2, then 0.4 m2.": lambda: _room_wh()[::-1]})
 
 
-# ---- 04 power and thermal -------------------------------------------------------------------------------------
+# ---- 04 power and thermal ----------------------------------------------------------------------------------
 
 _DAY_ANGLES = power.hour_angle_deg(np.linspace(0, 708.734136, 721))
 
@@ -366,10 +391,11 @@ def _insulated(sink_k=100.0, noon=True):
 
 
 def _heaters(heater_w=16.0, payload=True):
-    """Heaters that keep Rashid-1 warm enough, those that leave it cool enough, and room for avionics with some."""
+    """Heaters that keep Rashid-1 warm, those that leave it cool, and room for avionics with some."""
     area, heat = _box()
     night = 0.85 * thermal.STEFAN_BOLTZMANN * area * (243.15**4 - 100.0**4)
-    noon = 0.85 * thermal.STEFAN_BOLTZMANN * area * (323.15**4 - 250.0**4) - heat + (0 if payload else _mare().payload_power_w)
+    noon = 0.85 * thermal.STEFAN_BOLTZMANN * area * (323.15**4 - 250.0**4) - heat
+    noon += 0 if payload else _mare().payload_power_w
     return [night - 2.0, noon - 15.0, noon - heater_w]
 
 
@@ -383,16 +409,19 @@ exercise(
 
 exercise(
     "04.2", _polar_means, "Mean of the incidence factor over a whole lunar day; north is azimuth 0.",
-    {"That is the mean over the sunlit half; the night belongs to the lunar day.": lambda: _polar_means(sunlit=True),
+    {"That is the mean over the sunlit half; the night belongs to the lunar day.":
+        lambda: _polar_means(sunlit=True),
      "Those panels face south, and look away from the sun; north is azimuth 0.": lambda: _polar_means(180.0),
-     "In the order of the question: upright, flat, tilted by 80 deg.": lambda: _polar_means()[[1, 2, 0]]}, within=0.02)
+     "In the order of the question: upright, flat, tilted by 80 deg.": lambda: _polar_means()[[1, 2, 0]]},
+    within=0.02)
 
 exercise(
     "04.3", lambda: 100 * (1 - Model().charge_efficiency * Model().discharge_efficiency),
     "What comes out, over what went in, in percent lost.",
     {"Losses do not add: the second is taken from what the first has left.": lambda: 10.0,
      "That is one way; the energy goes in and comes out again.": lambda: 5.0,
-     "That is what is left.": lambda: 100 * Model().charge_efficiency * Model().discharge_efficiency}, within=0.005)
+     "That is what is left.": lambda: 100 * Model().charge_efficiency * Model().discharge_efficiency},
+    within=0.005)
 
 exercise(
     "04.4", _insulated, "Solve the balance at night for the emissivity, then take the noon heat with it.",
@@ -408,7 +437,7 @@ exercise(
         lambda: _heaters(heater_w=0.0)}, within=0.03)
 
 
-# ---- 05 mission -----------------------------------------------------------------------------------------------
+# ---- 05 mission --------------------------------------------------------------------------------------------
 
 @cache
 def _unlimited():
@@ -418,7 +447,8 @@ def _unlimited():
 
 
 def _polar_sunlight(**changes):
-    return evaluate(_rashid(), replace(catalog.scenario("polar_prospecting"), **changes)).average_solar_power_w
+    return evaluate(_rashid(), replace(catalog.scenario("polar_prospecting"),
+                                       **changes)).average_solar_power_w
 
 
 @cache
@@ -464,32 +494,38 @@ exercise(
         lambda: [_unlimited()[0], 14 * 80 / _unlimited()[0]]}, within=0.01)
 
 exercise(
-    "05.2", lambda: _polar_sunlight(panel_tilt_deg=0.0), "Replace the tilt by 0, evaluate, read average_solar_power_w.",
+    "05.2", lambda: _polar_sunlight(panel_tilt_deg=0.0),
+    "Replace the tilt by 0, evaluate, read average_solar_power_w.",
     {"That is with the panel tilted, as in the catalogue.": _polar_sunlight,
      "That is a panel which faces away from the noon sun.": lambda: _polar_sunlight(panel_azimuth_deg=180.0)})
 
 exercise(
-    "05.3", lambda: np.median(_hub_speeds()), "Speed over r (1 - s) for each design that moves; then the middle one.",
+    "05.3", lambda: np.median(_hub_speeds()),
+    "Speed over r (1 - s) for each design that moves; then the middle one.",
     {"That is the mean; a few fast ones pull it up. Half of the designs lie below the median.":
         lambda: _hub_speeds().mean(),
-     "Stalled designs have speed 0 and count for nothing: leave them out.": lambda: np.median(_hub_speeds(True))},
+     "Stalled designs have speed 0 and count for nothing: leave them out.":
+        lambda: np.median(_hub_speeds(True))},
     within=0.01)
 
 exercise(
-    "05.4", _morning_battery_wh, "An array of capacities; the first whose lowest charge stays above the floor.",
-    {"The heavier battery makes the rover heavier, and the load grows with it.": lambda: _morning_battery_wh(False)},
+    "05.4", _morning_battery_wh,
+    "An array of capacities; the first whose lowest charge stays above the floor.",
+    {"The heavier battery makes the rover heavier, and the load grows with it.":
+        lambda: _morning_battery_wh(False)},
     within=0.002)
 
 exercise(
     "05.5", lambda: replace(_rashid(), wheel_radius_m=0.15, wheel_width_m=0.06, peak_wheel_torque_nm=1.0), "",
     {"the hub holds it back": _rashid,
-     "It stalls": lambda: replace(_rashid(), wheel_radius_m=0.15, wheel_width_m=0.06, peak_wheel_torque_nm=0.3),
+     "It stalls": lambda: replace(_rashid(), wheel_radius_m=0.15, wheel_width_m=0.06,
+                                  peak_wheel_torque_nm=0.3),
      "heavier than 20 kg": lambda: replace(_rashid(), battery_capacity_wh=500),
      "The avionics power may not change": lambda: replace(_rashid(), avionics_power_w=5.0),
      "no sunlight to spare": lambda: replace(_rashid(), solar_area_m2=0.1)}, judge=_far_at_the_pole)
 
 
-# ---- 06 point design ------------------------------------------------------------------------------------------
+# ---- 06 point design ---------------------------------------------------------------------------------------
 
 _BINDS = ("soil", "traction", "torque", "hub speed", "sun", "battery", "range limit")
 
@@ -497,7 +533,8 @@ _BINDS = ("soil", "traction", "torque", "hub speed", "sun", "battery", "range li
 @cache
 def _polar_slopes():
     slopes_deg = np.arange(36.0)
-    return slopes_deg, evaluate(_rashid(), replace(catalog.scenario("polar_prospecting"), slope_deg=slopes_deg))
+    return slopes_deg, evaluate(_rashid(), replace(catalog.scenario("polar_prospecting"),
+                                                   slope_deg=slopes_deg))
 
 
 def _missed_pct(metric, limit):
@@ -511,7 +548,8 @@ def _torque_shares(swapped=False):
     large, small = pair[::-1] if swapped else pair
     shares = attribution(large, small, polar).contributions["range_km"]
     alone = evaluate(replace(small, peak_wheel_torque_nm=large.peak_wheel_torque_nm), polar)
-    return [shares[list(DESIGN_SPACE).index("peak_wheel_torque_nm")], alone.range_km - evaluate(small, polar).range_km]
+    return [shares[list(DESIGN_SPACE).index("peak_wheel_torque_nm")],
+            alone.range_km - evaluate(small, polar).range_km]
 
 
 def _tenacious_mended(design):
@@ -521,7 +559,8 @@ def _tenacious_mended(design):
         return "You changed " + ", ".join(changed) + "."
     result = evaluate(design, _mare())
     if result.stalled:
-        return "It stalls: " + ("the hub is too weak." if result.wheel_torque_nm > design.peak_wheel_torque_nm else "no grip.")
+        return "It stalls: " + ("the hub is too weak."
+                                if result.wheel_torque_nm > design.peak_wheel_torque_nm else "no grip.")
     if result.total_mass_kg > 11.5:
         return f"It weighs {result.total_mass_kg:.2f} kg."
     return "" if result.range_km >= 50 else f"It drives {result.range_km:.0f} km: what binds now?"
@@ -529,12 +568,14 @@ def _tenacious_mended(design):
 
 exercise(
     "06.1", lambda: "sun", "The bold line at the top of the answers names it.",
-    {"The pack is empty for hours, but more of it would not help: there is nothing to fill it.": lambda: "battery",
+    {"The pack is empty for hours, but more of it would not help: there is nothing to fill it.":
+        lambda: "battery",
      "It stands still, yet its wheels could climb: look at 'stalled'.": lambda: "traction",
      "The read-outs show that the hub gives enough.": lambda: "torque"}, choices=_BINDS)
 
 exercise(
-    "06.2", lambda: _first(_polar_slopes()[0], _polar_slopes()[1].stalled), "Move the slope until 'stalled' says yes.",
+    "06.2", lambda: _first(_polar_slopes()[0], _polar_slopes()[1].stalled),
+    "Move the slope until 'stalled' says yes.",
     {"That is the slope capability, rounded up; it is taken at slip 0.6, and the rover may slip more.":
         lambda: np.ceil(_polar_slopes()[1].slope_capability_deg[0]),
      "There it still drives, if slowly.": lambda: _first(_polar_slopes()[0], _polar_slopes()[1].stalled) - 1},
@@ -549,7 +590,8 @@ exercise(
         lambda: 100 * intervals(_rashid(), _mare(), draws=200).low["stalled"]})
 
 exercise(
-    "06.4", _torque_shares, "The bar of the view 'why', then the change of range when torque alone is changed.",
+    "06.4", _torque_shares,
+    "The bar of the view 'why', then the change of range when torque alone is changed.",
     {"From Rashid-1 to Yutu-2, not back: Rashid-1 is the baseline.": lambda: _torque_shares(True),
      "First the share, then the gain alone.": lambda: _torque_shares()[::-1]}, within=0.03)
 
@@ -562,7 +604,7 @@ exercise(
      "You changed": lambda: replace(_rashid(), wheel_radius_m=0.08)}, judge=_tenacious_mended)
 
 
-# ---- 07 Pareto fronts ---------------------------------------------------------------------------------------
+# ---- 07 Pareto fronts --------------------------------------------------------------------------------------
 
 @cache
 def _front(scenario="equatorial_mare_traverse", seed=13, six=False, goals=None, least_slope_deg=None):
@@ -583,7 +625,8 @@ def _mass_at(front, slope_deg=34):
 def _late_polar():
     """Lightest mass and median battery when five polar fronts are merged and searched on."""
     five = [_front("polar_prospecting", seed).designs for seed in (12, 13, 14, 15, 112)]
-    merged = Design(**{name: np.concatenate([getattr(design, name) for design in five]) for name in DESIGN_SPACE})
+    merged = Design(**{name: np.concatenate([getattr(design, name) for design in five])
+                       for name in DESIGN_SPACE})
     late = pareto_front(catalog.scenario("polar_prospecting"), population=80, seed=1, start=merged)
     return [late.performance.total_mass_kg.min(), np.median(late.designs.battery_capacity_wh)]
 
@@ -591,7 +634,7 @@ def _late_polar():
 def _settled(answer):
     lightest_kg, battery_wh = answer
     if not 8 < lightest_kg < 10.5:
-        return "The first number should be the mass of the lightest design, in kg; the merged search goes below every single one."
+        return "The first number should be the mass of the lightest design, in kg, after the merged search."
     return "" if 5 <= battery_wh < 75 else (
         "The second number should be the median battery after the long search; it has not come down yet.")
 
@@ -606,15 +649,19 @@ def _floaters(goals=_FLOAT):
 
 
 exercise(
-    "07.1", lambda: 85 - _mare().traverse_limit_km, "Read the message: it says how close the nearest design came.",
+    "07.1", lambda: 85 - _mare().traverse_limit_km,
+    "Read the message: it says how close the nearest design came.",
     {"So far the nearest design came; by how much did it miss?": lambda: _mare().traverse_limit_km,
      "That is what you asked for.": lambda: 85.0,
-     "No design meets the demand; the question is by how much the nearest missed it.": lambda: 0.0}, within=0.001)
+     "No design meets the demand; the question is by how much the nearest missed it.": lambda: 0.0},
+    within=0.001)
 
 exercise(
-    "07.2", lambda: _front().history[-1], "The share of the darts that land in the dominated part, times the box.",
+    "07.2", lambda: _front().history[-1],
+    "The share of the darts that land in the dominated part, times the box.",
     {"That is the share of the darts; the box is larger than 1.": lambda: _front().history[-1] / 1.05**3,
-     "That is the part of the box that is not dominated.": lambda: 1.05**3 - _front().history[-1]}, within=0.03)
+     "That is the part of the box that is not dominated.": lambda: 1.05**3 - _front().history[-1]},
+    within=0.03)
 
 exercise(
     "07.3", lambda: [_mass_at(_front()), _mass_at(_front(six=True))],
@@ -631,12 +678,12 @@ exercise(
 
 exercise(
     "07.5", _floaters, "Objectives range, mass and sinkage; the slope is a constraint now.",
-    {"That is the front with slope capability as an objective: ballast buys slope, and narrow wheels press hard.":
+    {"That is the front with slope capability as an objective: ballast buys slope there.":
         lambda: _floaters((("range_km", "max"), ("total_mass_kg", "min"), ("slope_capability_deg", "max"))),
      "First the mass, then the width.": lambda: _floaters()[::-1]}, within=0.15)
 
 
-# ---- 08 design rules ------------------------------------------------------------------------------------------
+# ---- 08 design rules ---------------------------------------------------------------------------------------
 
 _NIGHT_WH = 13.0 * Model().synodic_day_h / 2             # avionics and payload through half a lunar day
 
@@ -646,12 +693,13 @@ exercise(
     {"That is for a rocker-bogie; the question is about a rigid chassis on four wheels.":
         lambda: 0.15 * Model().rocker_bogie_obstacle_ratio,
      "A rigid rover does not climb as high as its wheel's radius.": lambda: 0.15,
-     "That takes the diameter for the radius, or the largest wheel of the search.": lambda: 0.1}, within=0.005)
+     "That takes the diameter for the radius, or the largest wheel of the search.": lambda: 0.1},
+    within=0.005)
 
 exercise(
     "08.2", lambda: _NIGHT_WH / (1 - Model().soc_floor) / Model().discharge_efficiency,
     "Energy is power times hours; then allow for what may not be used and for what is lost on the way out.",
-    {"That is the energy that the rover uses. The battery may not be emptied, and loses a part in discharging.":
+    {"That is what the rover uses. The battery may not be emptied, and loses a part in discharging.":
         lambda: _NIGHT_WH,
      "The discharge loses a part, too.": lambda: _NIGHT_WH / (1 - Model().soc_floor),
      "Only the part above the floor may be used.": lambda: _NIGHT_WH / Model().discharge_efficiency,
@@ -687,16 +735,18 @@ def _presses_softly(design):
     """What the design of exercise 08.4 still misses, or ""."""
     p = evaluate(design, catalog.scenario("equatorial_mare_traverse"))
     if p.stalled or p.range_km < 80 - 1e-9:
-        return f"It drives {p.range_km:.1f} km" + (" because it stalls." if p.stalled else ", short of the limit.")
+        return f"It drives {p.range_km:.1f} km" + (" because it stalls." if p.stalled
+                                                   else ", short of the limit.")
     if p.ground_pressure_kpa > 2:
         return f"It presses too hard, {p.ground_pressure_kpa:.2f} kPa: wider or larger wheels, or less mass."
     if p.slope_capability_deg < 30:
-        return f"It climbs {p.slope_capability_deg:.1f} degrees only: grousers and radius are the cheapest traction."
+        return f"It climbs {p.slope_capability_deg:.1f} deg only: grousers and radius are cheap traction."
     return "" if p.total_mass_kg <= 15 else f"It weighs {p.total_mass_kg:.1f} kg: look at the mass breakdown."
 
 
 def _soft():
-    return Design(wheel_radius_m=0.2, wheel_width_m=0.055, grouser_height_m=0.02, grouser_count=24, wheel_count=4,
+    return Design(wheel_radius_m=0.2, wheel_width_m=0.055, grouser_height_m=0.02, grouser_count=24,
+                  wheel_count=4,
                   chassis_mass_kg=0.5, wheelbase_m=0.6, solar_area_m2=0.12, battery_capacity_wh=10,
                   avionics_power_w=6, peak_wheel_torque_nm=1.0)
 
@@ -711,7 +761,7 @@ exercise(
     judge=_presses_softly)
 
 
-# ---- 09 sensitivity -------------------------------------------------------------------------------------------
+# ---- 09 sensitivity ----------------------------------------------------------------------------------------
 
 exercise(
     "09.1", lambda: np.tan(np.radians(35)) / np.tan(np.radians(46)),
@@ -724,7 +774,8 @@ exercise(
 
 exercise(
     "09.2", lambda: 0.9**17, "All of them must be inside: multiply.",
-    {"That is the chance of one.": lambda: 0.9, "That is the chance that at least one is outside.": lambda: 1 - 0.9**17,
+    {"That is the chance of one.": lambda: 0.9,
+     "That is the chance that at least one is outside.": lambda: 1 - 0.9**17,
      "That is the chance that all are outside.": lambda: 0.1**17}, within=0.02)
 
 
@@ -735,7 +786,8 @@ def _capabilities(*angles_deg):
 
 
 exercise(
-    "09.3", lambda: _capabilities(46, 35, 41), "Replace the friction angle in the scenario's soil and read slope_capability_deg.",
+    "09.3", lambda: _capabilities(46, 35, 41),
+    "Replace the friction angle in the scenario's soil and read slope_capability_deg.",
     {"In the order of the question, not by size.": lambda: _capabilities(35, 41, 46),
      "Not in proportion to the angle, nor to its tangent: pull is grip less resistance.":
         lambda: _capabilities(46) * np.tan(np.radians([46, 35, 41])) / np.tan(np.radians(46))}, within=0.01)
@@ -748,13 +800,15 @@ def _climbs_on_35(design):
     if p.total_mass_kg > 15:
         return f"It weighs {p.total_mass_kg:.1f} kg."
     if not p.feasible:
-        return "It does not drive the mission itself on that soil: " + ("it stalls." if p.stalled else "too little sun.")
+        return "It does not drive the mission itself on that soil: " + ("it stalls." if p.stalled
+                                                                        else "too little sun.")
     low = intervals(design, scenario, level=0.8).low["slope_capability_deg"]
     return "" if low >= 14 else f"Nine of ten draws climb {low:.1f} degrees only: too little margin."
 
 
 def _climber():
-    return Design(wheel_radius_m=0.2, wheel_width_m=0.035, grouser_height_m=0.02, grouser_count=24, wheel_count=4,
+    return Design(wheel_radius_m=0.2, wheel_width_m=0.035, grouser_height_m=0.02, grouser_count=24,
+                  wheel_count=4,
                   chassis_mass_kg=1.5, wheelbase_m=0.6, solar_area_m2=0.15, battery_capacity_wh=20,
                   avionics_power_w=6, peak_wheel_torque_nm=2.0)
 
@@ -767,10 +821,11 @@ exercise(
      "too little margin": lambda: replace(_climber(), grouser_count=20)}, judge=_climbs_on_35)
 
 
-# ---- 10 rediscovery -------------------------------------------------------------------------------------------
+# ---- 10 rediscovery ----------------------------------------------------------------------------------------
 
 exercise(
-    "10.1", lambda: np.sqrt(8 / 6), "Mean of (x - y)^2 for uniform x and y, times the dimensions; then the root.",
+    "10.1", lambda: np.sqrt(8 / 6),
+    "Mean of (x - y)^2 for uniform x and y, times the dimensions; then the root.",
     {"That is the mean square; take the root.": lambda: 8 / 6,
      "That is the variance of one number; the difference of two has twice as much.": lambda: np.sqrt(8 / 12),
      "That is the diagonal, the largest distance there is.": lambda: np.sqrt(8.0),
@@ -778,8 +833,10 @@ exercise(
     within=0.002)
 
 exercise(
-    "10.2", lambda: 0.28**2 * 6, "Each dimension is worth one sixth; how many sixths are in the square of the distance?",
-    {"The square of the distance, not the distance.": lambda: 0.28 * 6, "Divide by 1/6, do not multiply.": lambda: 0.28**2 / 6,
+    "10.2", lambda: 0.28**2 * 6,
+    "Each dimension is worth one sixth; how many sixths are in the square of the distance?",
+    {"The square of the distance, not the distance.": lambda: 0.28 * 6,
+     "Divide by 1/6, do not multiply.": lambda: 0.28**2 / 6,
      "That is the share of the eight dimensions, not their number.": lambda: 0.28**2 * 6 / 8}, within=0.01)
 
 
@@ -793,7 +850,7 @@ def _steepest(payload_kg=0.5):
 
 exercise(
     "10.3", _steepest, "Evaluate over an array of slopes; the last one that is not stalled.",
-    {"That is the slope capability, taken at a slip of 0.6. A rover may drive on with more slip, until it stalls.":
+    {"That is the slope capability, taken at a slip of 0.6. A rover may drive on until it stalls.":
         lambda: evaluate(catalog.rover("CADRE-unit"), replace(
             catalog.scenario("polar_micro"), payload_mass_kg=0.5)).slope_capability_deg,
      "That is the slope of the mission, where it stalls.": lambda: 20.0}, within=0.01)
@@ -826,7 +883,7 @@ exercise(
      "no better in any": lambda: _better_pragyan(wheelbase_m=0.6)}, judge=_pragyans_neighbour)
 
 
-# ---- 11 the paper's ledger ------------------------------------------------------------------------------------
+# ---- 11 the paper's ledger ---------------------------------------------------------------------------------
 
 exercise(
     "11.1", lambda: 100 * (0.792 - 0.764) / 0.778, "Width over value, in percent.",
@@ -842,8 +899,9 @@ exercise(
      "All of them must hold, so the chances multiply.": lambda: [39 * 0.1, 0.9]}, within=0.02)
 
 exercise(
-    "11.3", lambda: all(validation.accepts(catalog.table("paper_targets.csv").set_index("id").accept[row], pair)
-                        for row, pair in (("front_mare_range_km", (0.2, 80.0)), ("front_mare_mass_kg", (9.9, 61.0)))),
+    "11.3", lambda: all(
+        validation.accepts(catalog.table("paper_targets.csv").set_index("id").accept[row], pair)
+        for row, pair in (("front_mare_range_km", (0.2, 80.0)), ("front_mare_mass_kg", (9.9, 61.0)))),
     "Read both bands: what do they ask of the smallest value, what of the largest, and what not at all?")
 
 
@@ -860,20 +918,23 @@ exercise(
     "One search for each shift; the median battery of its designs; the largest of the three.",
     {"That is the smallest of the three.":
         lambda: [100 * int(np.argmin(_polar_batteries())), min(_polar_batteries())],
-     "First the shift, then the battery.": lambda: [max(_polar_batteries()), 100 * int(np.argmax(_polar_batteries()))],
+     "First the shift, then the battery.": lambda: [max(_polar_batteries()),
+                                                    100 * int(np.argmax(_polar_batteries()))],
      "That is the paper's own figure, of one seed.": lambda: [0, 150.0]}, within=0.02)
 
 
-# ---- 12 design your rover -------------------------------------------------------------------------------------
+# ---- 12 design your rover ----------------------------------------------------------------------------------
 
 SWIRL = Scenario(
     name="reiner_gamma_swirl", latitude_deg=7.5, soil=catalog.soil("apollo-nominal"), duration_earth_days=13,
     slope_deg=12, duty_cycle=0.1, traverse_limit_km=20, payload_mass_kg=4, payload_power_w=12,
     required_obstacle_height_m=0.06, panel_tilt_deg=0,
-    study=Study(constraints=(("range_km", ">=", 10), ("slope_capability_deg", ">=", 18), ("minimum_soc", ">=", 0.2),
+    study=Study(constraints=(("range_km", ">=", 10), ("slope_capability_deg", ">=", 18),
+                             ("minimum_soc", ">=", 0.2),
                              ("total_mass_kg", "<=", 19))))
 """The mission brief of notebook 12."""
-SWIRL_LIMITS = {"wheel_radius_m": (0.05, 0.15), "wheel_width_m": (0.05, 0.20), "grouser_height_m": (0.0, 0.015),
+SWIRL_LIMITS = {"wheel_radius_m": (0.05, 0.15), "wheel_width_m": (0.05, 0.20),
+                "grouser_height_m": (0.0, 0.015),
                 "chassis_mass_kg": (3.0, 12.0), "solar_area_m2": (0.1, 0.5), "avionics_power_w": (10.0, 10.0)}
 """Limits that the brief sets on the design."""
 
@@ -915,7 +976,7 @@ def _accepts(design):
 
 exercise(
     "12.1", lambda: SWIRL.required_obstacle_height_m / Model().rigid_obstacle_ratio,
-    "The obstacle that a rover climbs is a multiple of its wheel radius; the multiple depends on the suspension.",
+    "The obstacle that a rover climbs is a multiple of its wheel radius; which, depends on the suspension.",
     {"That is the radius for six wheels on a rocker-bogie; the question asks for four on a rigid chassis.":
         lambda: SWIRL.required_obstacle_height_m / Model().rocker_bogie_obstacle_ratio,
      "A rigid chassis does not climb an obstacle as high as its wheel's radius.": lambda: 0.06,
@@ -925,13 +986,15 @@ exercise(
 exercise(
     "12.2", lambda: _drained_wh() / (1 - 0.2),
     "Read `stored_wh` of the log with a battery large enough never to run low, at duty cycle 0.",
-    {"That is the energy which leaves the battery. One fifth of it must still be there in the end.": _drained_wh,
-     "That fills the battery by the fifth that must remain, but of the drained energy and not of the whole battery.":
+    {"That is the energy which leaves the battery. One fifth of it must still be there in the end.":
+        _drained_wh,
+     "That adds a fifth of the drained energy; a fifth of the whole battery must remain.":
         lambda: _drained_wh() * 1.2,
      "The discharge loses a part: the battery gives up more than the load receives.":
         lambda: _drained_wh() * Model().discharge_efficiency / (1 - 0.2),
      "The array helps before it carries the whole load: the drain is not constant all morning.":
-        lambda: 22 * (_first_morning().solar_w < 22).sum() / Model().discharge_efficiency / (1 - 0.2)}, within=0.004)
+        lambda: 22 * (_first_morning().solar_w < 22).sum() / Model().discharge_efficiency / (1 - 0.2)},
+        within=0.004)
 
 exercise(
     "12.3", lambda: evaluate(swirl_guess(), replace(
@@ -943,11 +1006,13 @@ exercise(
         lambda: evaluate(swirl_guess(), SWIRL).slope_capability_deg - evaluate(swirl_guess(), replace(
             SWIRL, soil=catalog.soil("sourcebook-trafficability"))).slope_capability_deg,
      "apollo-loose is another soil: looser, and not only weaker in friction.":
-        lambda: evaluate(swirl_guess(), replace(SWIRL, soil=catalog.soil("apollo-loose"))).slope_capability_deg})
+        lambda: evaluate(swirl_guess(), replace(SWIRL,
+                                                soil=catalog.soil("apollo-loose"))).slope_capability_deg})
 
 
 def _accepted():
-    return replace(swirl_guess(), wheel_radius_m=0.14, wheel_width_m=0.05, grouser_count=22, chassis_mass_kg=3.0,
+    return replace(swirl_guess(), wheel_radius_m=0.14, wheel_width_m=0.05, grouser_count=22,
+                   chassis_mass_kg=3.0,
                    solar_area_m2=0.45, battery_capacity_wh=270, peak_wheel_torque_nm=0.8)
 
 
