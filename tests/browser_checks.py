@@ -21,7 +21,8 @@ if browser.CHROMIUM is None and os.environ.get("CI"):
 pytestmark = pytest.mark.skipif(browser.CHROMIUM is None, reason="no Chromium or Chrome on this machine")
 
 OPEN = """async path => { const app = window.jupyterapp; await app.restored;
-    const panel = await app.commands.execute('docmanager:open', {path}); await panel.context.ready }"""
+    const panel = await app.commands.execute('docmanager:open',
+        {path, kernelPreference: {shouldStart: false, canStart: false}}); await panel.context.ready }"""
 ERROR = '[data-mime-type="application/vnd.jupyter.error"]'
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
 KNOWN = {"aria-input-field-name"}  # slider handles have no name: each has a labelled number box beside it
@@ -96,7 +97,7 @@ def assert_sound(explorer):
     """No error, no blank picture, nothing wider than the screen."""
     expect(explorer.locator('[role="alert"]')).to_have_count(0)
     assert "Error" not in explorer.inner_text()
-    pictures = explorer.evaluate("""e => [...e.querySelectorAll('img')].map(i => {
+    pictures = explorer.evaluate("""e => [...e.querySelectorAll('.rdk-picture')].map(i => {
         const canvas = document.createElement('canvas'), [w, h] = [canvas.width, canvas.height] = [60, 40];
         const context = canvas.getContext('2d');
         context.drawImage(i, 0, 0, w, h);
@@ -320,7 +321,7 @@ def test_the_live_front_follows_a_key(in_lab):
 
 
 def test_every_other_notebook_opens(page, lab):
-    """Their cells run in nbval; here they must show: one page, no kernel waited for."""
+    """Their cells run in nbval; here they must show: one page, no kernels."""
     url, token = lab
     page.goto(f"{url}lab?token={token}&reset")
     page.wait_for_function("() => window.jupyterapp?.shell")
