@@ -49,6 +49,10 @@ STYLE = """<style>
 .rdk-readout thead th {border-bottom: 1px solid #767676}
 .rdk-explorer [role=alert] {border-left: 4px solid #D55E00; padding-left: 6px}
 </style>"""
+# JupyterLab takes keys that are pressed in a menu for its own: arrows move from cell to cell, "y" changes a cell's kind.
+# It leaves elements alone that carry this attribute, so that each gets it with the focus.
+KEYS = ("<img hidden alt='' src='data:,' onerror=\"this.closest('.rdk-explorer').addEventListener('focusin', "
+        "event => event.target.dataset.lmSuppressShortcuts = 'true'); this.remove()\">")
 
 
 class Refresher:
@@ -212,7 +216,7 @@ class Controls:
         right = W.VBox([self.readout, self.notice, rows["view"], *self.panels.values(), self.picture],
                        layout=W.Layout(flex="1 1 480px", min_width="0"))
         show(self.pages, "rover")
-        return W.VBox([W.HTML(STYLE), W.HBox([left, right], layout=_wrap())])
+        return W.VBox([W.HTML(STYLE + KEYS), W.HBox([left, right], layout=_wrap())])
 
 
 def _wrap():
