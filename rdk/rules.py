@@ -8,6 +8,7 @@ feels where chance put them.
 from __future__ import annotations
 
 import dataclasses
+import warnings
 
 import numpy as np
 import pandas as pd
@@ -195,8 +196,11 @@ def swapped(front, **changes):
         capability change (`range_change_km`, `mass_change_kg`, `slope_change_deg`).
     """
     old = front.performance
-    new = evaluate(ballasted(dataclasses.replace(front.designs, **changes), front.scenario, old.total_mass_kg,
-                             front.model), front.scenario, front.model)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)     # the ballast may be a chassis outside the class
+        changed = dataclasses.replace(front.designs, **changes)
+        new = evaluate(ballasted(changed, front.scenario, old.total_mass_kg, front.model), front.scenario,
+                       front.model)
     return pd.DataFrame(dict(
         total_mass_kg=old.total_mass_kg, **{f"old_{name}": getattr(front.designs, name) for name in changes},
         range_change_km=new.range_km - old.range_km, mass_change_kg=new.total_mass_kg - old.total_mass_kg,

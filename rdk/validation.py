@@ -632,7 +632,7 @@ def accepts(accept, value):
     return bool(np.all(inside))
 
 
-def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None):
+def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None, sections=None):
     """Every number that the paper reports beside ours, computed afresh.
 
     Parameters
@@ -642,6 +642,8 @@ def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None):
         "cost" (timings: they differ from run to run).
     searches : rdk.ledger.Searches, optional
         The studies behind the stochastic rows: with an executor, with other seeds, or computed already.
+    sections : sequence of str, optional
+        Only rows of these sections of the paper.
 
     Returns
     -------
@@ -653,7 +655,7 @@ def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None):
     Raises
     ------
     ValueError
-        If a kind is unknown.
+        If a kind or a section is unknown.
     NotImplementedError
         If a row has no computation.
     """
@@ -663,7 +665,11 @@ def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None):
     for kind in kinds:
         if kind not in known:
             raise ValueError(f"kinds must be among {', '.join(known)}; got {kind!r}")
-    targets = targets[targets.kind.isin(list(kinds))]
+    known = list(dict.fromkeys(targets.paper_section))
+    for section in sections or ():
+        if section not in known:
+            raise ValueError(f"sections must be among {', '.join(known)}; got {section!r}")
+    targets = targets[targets.kind.isin(list(kinds)) & targets.paper_section.isin(list(sections or known))]
     missing = [name for name in targets.id if name not in _LEDGER]
     if missing:
         raise NotImplementedError("no computation for the ledger rows " + ", ".join(missing))

@@ -104,6 +104,13 @@ def test_swapping_moves_what_the_variable_moves(front):
     assert small.slope_change_deg.max() < 0, "a small wheel climbs less at equal mass"
 
 
+@pytest.mark.filterwarnings("error")
+def test_swapping_is_quiet_where_the_ballast_leaves_the_class():
+    heavy = dataclasses.replace(rdk.random_designs(1, seed=3), chassis_mass_kg=50.0, battery_capacity_wh=500.0)
+    table = rules.swapped(search(heavy), battery_capacity_wh=5.0)
+    assert abs(table.mass_change_kg[0]) < 1e-9
+
+
 def test_dominated_by_hand():
     designs = rdk.random_designs(1, seed=5)
     lighter = dataclasses.replace(designs, wheelbase_m=[0.5], chassis_mass_kg=designs.chassis_mass_kg)
@@ -336,6 +343,13 @@ def test_ledger_computes_every_row(small_ledger):
     assert table.why.map(type).eq(str).all()
     assert table.agrees[["solves_per_evaluation", "front_seconds", "fixed_plus_hourly"]].isna().all()
     assert table.agrees.drop(["solves_per_evaluation", "front_seconds", "fixed_plus_hourly"]).notna().all()
+
+
+def test_ledger_of_one_section():
+    table = validation.paper_ledger(("deterministic",), sections=["flown rovers"])
+    assert set(table.section) == {"flown rovers"} and len(table) == 8
+    with pytest.raises(ValueError, match="sections must be among terramechanics validation, .*; got 'weather'"):
+        validation.paper_ledger(sections=["weather"])
 
 
 def test_ledger_says_why_where_it_disagrees(small_ledger):
