@@ -976,7 +976,7 @@ def _accepts(design):
 
 exercise(
     "12.1", lambda: SWIRL.required_obstacle_height_m / Model().rigid_obstacle_ratio,
-    "The obstacle that a rover climbs is a multiple of its wheel radius; which, depends on the suspension.",
+    "The obstacle that a rover climbs is a multiple of its wheel radius; the suspension decides which.",
     {"That is the radius for six wheels on a rocker-bogie; the question asks for four on a rigid chassis.":
         lambda: SWIRL.required_obstacle_height_m / Model().rocker_bogie_obstacle_ratio,
      "A rigid chassis does not climb an obstacle as high as its wheel's radius.": lambda: 0.06,
