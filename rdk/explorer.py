@@ -246,7 +246,7 @@ class Explorer:
     def _repr_mimebundle_(self, **kwargs):
         """The widgets; for readers without a kernel, the read-outs as text and the picture."""
         still = {"text/plain": self.text()}
-        if self.image() is not None:
+        if self.image() is not None and self.inputs["view"].value != "live front":       # no still of what is to move
             still["image/png"] = base64.b64encode(self.image().data).decode()
         return {**self.controls.widget._repr_mimebundle_(**kwargs), **still}
 
