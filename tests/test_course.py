@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rdk
-from rdk import course, exercises
+from rdk import course, exercises  # noqa: F401  registers them
 
 REPO = Path(__file__).parents[1]
 PATHS = {path.name[:2]: path for path in sorted((REPO / "notebooks").glob("[0-9][0-9]_*.ipynb"))}
@@ -172,9 +172,13 @@ def test_each_exercise_has_a_hint_a_place_for_the_answer_and_a_checked_solution(
     assert not re.search(r"`|\$|\*\w|\]\(", hint[1]), "no Markdown inside HTML: it would show as it stands"
     open_cells = [cell for cell in cells if cell.cell_type == "code"
                   and "solution" not in cell.metadata.get("tags", [])]
-    solutions = [cell for cell in cells if "solution" in cell.metadata.get("tags", [])]
+    folded = [cell for cell in cells if "solution" in cell.metadata.get("tags", [])]
+    solutions = [cell for cell in folded if cell.cell_type == "code"]
     assert [cell.source for cell in open_cells] == [f'answer = ...\nrdk.check("{number}", answer)']
     assert "No answer yet" in open_cells[0].outputs[0]["data"]["text/plain"]
     assert any(f'assert rdk.check("{number}", ' in cell.source
                for cell in solutions), "the solution passes its check"
-    assert exercises.__doc__ and all(cell.metadata["jupyter"]["source_hidden"] for cell in solutions)
+    # a folded cell still shows its output when it runs: the heading above hides all of it in JupyterLab
+    assert folded[0].source == "#### Solution" and folded[0].metadata["jp-MarkdownHeadingCollapsed"] is True
+    assert folded == cells[cells.index(folded[0]):], "nothing that belongs to the solution stands outside"
+    assert all(cell.metadata["jupyter"]["source_hidden"] for cell in solutions)
