@@ -537,13 +537,22 @@ def test_cancel_ends_the_search_and_keeps_what_it_found(explorer):
 
 
 def test_the_front_grows_on_the_screen(explorer, monkeypatch):
-    clock = itertools.count()
+    def unhurried(*args, on_generation, **problem):
+        """The search, waiting for each picture: a fast one would be over before the second is drawn."""
+        def follow(progress):
+            stop = on_generation(progress)
+            explorer.settle()
+            return stop
+        return search(*args, on_generation=follow, **problem)
+
+    search, clock = explorer_module.search, itertools.count()
+    monkeypatch.setattr(explorer_module, "search", unhurried)
     monkeypatch.setattr(explorer_module.time, "monotonic", lambda: next(clock))      # every generation is due
     seen = []
     explorer.controls.picture.observe(lambda change: seen.append(change.new), "value")
     explorer.set(population=20, generations=12, view="optimise")
     explorer.optimise(wait=True)
-    assert len({text for text in seen if "front of the search" in text or "Front of" in text}) >= 3
+    assert len({text for text in seen if "front of the search" in text or "Front of" in text}) >= 8
     assert_current(explorer)
 
 
