@@ -192,6 +192,14 @@ def test_readme_lists_the_collection_with_its_minutes():
     assert rows == [(path.stem, stated_minutes(path)) for path in PATHS]
 
 
+def test_the_map_of_the_first_notebook_agrees_with_the_readme():
+    cells = nbformat.read(PATHS[0], as_version=4).cells
+    chart, = (cell.source for cell in cells if cell.source.startswith("## 5 The map"))
+    rows = re.findall(r"^\| \[?(\d\d_\w+)\S* \| (.+) \| (\d+) \|$", chart, re.M)
+    readme = (REPO / "README.md").read_text(encoding="utf-8")
+    assert rows == re.findall(r"^\| \[(\d\d_\w+)\]\S+ \| (.+) \| (\d+) \|$", readme, re.M) != []
+
+
 def test_the_guide_lists_every_notebook_and_puts_each_on_the_course():
     guide = (REPO / "notebooks/README.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| \[(\d\d_\w+)\]\(\1\.ipynb\) \| (.+) \|([\d, ]*)\| (\d+) \|$", guide, re.M)
