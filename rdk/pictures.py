@@ -218,16 +218,16 @@ def why(figure, metric, contributions, before, after, baseline_name):
     return f"Bars that add up from {before:.3g} ({baseline_name}) to {after:.3g} in {label(metric)}: {words}."
 
 
-def curve(figure, name, metric, values, nominal, low, high, here, rovers):
-    """One metric along one variable, with its interval, this design and the published rovers."""
-    axes = _axes(figure, margins=dict(left=0.12, right=0.97, top=0.95, bottom=0.14))
-    axes.fill_between(values, low, high, color=BLUE, alpha=0.18, lw=0, label="90 % interval")
+def curve(figure, name, metric, values, nominal, band, here, rovers):
+    """One metric along one variable, with its interval (where, low, high), this design and the published rovers."""
+    axes = _axes(figure, margins=dict(left=0.12, right=0.97, top=0.92, bottom=0.14))
+    axes.fill_between(*band, color=BLUE, alpha=0.18, lw=0, label="90 % interval")
     axes.plot(values, nominal, color=BLUE, label="nominal")
     axes.plot(*here, "o", color=BLACK, ms=9, label="this design")
     if rovers is not None:
         _rovers(axes, *rovers)
     axes.set(xlabel=label(name), ylabel=label(metric))
-    axes.legend(fontsize=8, frameon=False)
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 0.99), ncols=4, fontsize=8, frameon=False, borderpad=0)
     return (f"{label(metric)} against {label(name)}: from {nominal[0]:.3g} at {values[0]:.3g} to {nominal[-1]:.3g} at "
             f"{values[-1]:.3g}; this design has {here[1]:.3g} at {here[0]:.3g}.")
 

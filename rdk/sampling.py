@@ -361,8 +361,9 @@ class Attribution:
 def attribution(design, baseline, scenario, model=Model()):
     """Exact Shapley values of each metric's difference between two designs, over the eleven design variables.
 
-    Every one of the 2^11 mixtures of the two designs is evaluated, in one call, and each variable is credited with
-    its mean marginal effect over all orders in which the variables could change (Shapley 1953).
+    Every mixture of the two designs is evaluated, 2^k of them in one call where k variables differ, and each variable is
+    credited with its mean marginal effect over all orders in which the variables could change (Shapley 1953). A variable
+    with one value in both designs has no effect and no share.
 
     Parameters
     ----------
@@ -391,15 +392,19 @@ def attribution(design, baseline, scenario, model=Model()):
     True
     """
     _single(design=design, baseline=baseline, scenario=scenario, model=model)
-    count = len(DESIGN_SPACE)
-    mixture = np.arange(2**count)
-    takes = (mixture[:, None] >> np.arange(count)) & 1 == 1          # (mixtures, variables): from the design?
-    result = evaluate(Design(**{name: np.where(takes[:, i], getattr(design, name), getattr(baseline, name))
-                                for i, name in enumerate(DESIGN_SPACE)}), scenario, model)
+    names = [name for name in DESIGN_SPACE if getattr(design, name) != getattr(baseline, name)]
+    count, order = len(names), list(DESIGN_SPACE)
+    takes = (np.arange(2**count)[:, None] >> np.arange(count)) & 1 == 1      # (mixtures, variables): from the design?
+    mixtures = {name: np.where(takes[:, i], getattr(design, name), getattr(baseline, name)) for i, name in enumerate(names)}
+    same = {name: np.full(len(takes), getattr(design, name)) for name in order if name not in names}
+    result = evaluate(Design(**mixtures, **same), scenario, model)
     size = takes.sum(1)
     share = np.array([math.factorial(k) * math.factorial(count - 1 - k) / math.factorial(count) for k in range(count)])
     # phi_i = sum over mixtures without i of share(size) * (with i - without i), as one matrix
-    weights = np.where(takes.T, share[size - 1], -share[np.minimum(size, count - 1)])
+    weights = np.zeros((len(order), len(takes)))
+    if names:
+        weights[[order.index(name) for name in names]] = np.where(takes.T, share[size - 1],
+                                                                  -share[np.minimum(size, count - 1)])
     contributions = {}
     for name in METRICS:
         values = np.asarray(getattr(result, name), float)

@@ -463,7 +463,9 @@ def test_attribution_equals_the_mean_over_all_orders():
     assert abs(frame.slope_capability_deg["grouser_count"] - (alone - before)) > 0.01
 
 
-def test_attribution_is_one_call_of_2048_mixtures(monkeypatch):
+@pytest.mark.parametrize("baseline, differ", [
+    (replace(TENACIOUS, wheel_count=6), 11), (TENACIOUS, 10), (replace(RASHID, wheel_radius_m=0.12), 1), (RASHID, 0)])
+def test_attribution_is_one_call_of_all_mixtures_of_what_differs(monkeypatch, baseline, differ):
     sizes = []
 
     def counted(design, *rest):
@@ -471,8 +473,8 @@ def test_attribution_is_one_call_of_2048_mixtures(monkeypatch):
         return rdk.evaluate(design, *rest)
 
     monkeypatch.setattr(sampling, "evaluate", counted)
-    sampling.attribution(RASHID, TENACIOUS, MARE)
-    assert sizes == [(2048,)]
+    shares = sampling.attribution(RASHID, baseline, MARE).contributions["total_mass_kg"]
+    assert sizes == [(2**differ,)] and shares.shape == (11,)
 
 
 def test_attribution_leaves_out_a_metric_that_is_no_number():
