@@ -1,6 +1,8 @@
 """Figures of rules, sensitivity, rediscovery and the ledger (notebooks 08 to 11)."""
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from .style import BLACK, BLUE, COLOURS, DASHES, GREY, MARKERS, ORANGE, _axes, _lines
@@ -217,6 +219,11 @@ def frontiers_by_scale(frontiers):
     return figure
 
 
+def _without_unit(name):
+    """A field's name in words, without the unit at its end."""
+    return re.sub(r"(_(kg|kn|kpa|deg|mm|nm|m2|m|n1|n2|wh|w))+$", "", name).replace("_", " ")
+
+
 def sobol_bars(indices, labels=None, most=9):
     """Sobol indices as bars, one panel a metric: filled the first order, hollow the total with its interval.
 
@@ -242,7 +249,7 @@ def sobol_bars(indices, labels=None, most=9):
         ax.barh(y, rows.total_order, 0.7, color="none", edgecolor=BLACK, label="total", xerr=spread,
                 error_kw=dict(lw=1, ecolor=GREY))
         ax.barh(y, rows.first_order.clip(0), 0.36, color=BLUE, label="first order")
-        ax.set_yticks(y, [name.replace("_", " ") for name in rows.input], fontsize=8)
+        ax.set_yticks(y, [_without_unit(name) for name in rows.input], fontsize=8)
         ax.set(xlim=(0, 1.08), title=(labels or {}).get(metric, metric), xlabel="share of the variance")
         ax.title.set_size(10)
         ax.grid(False, axis="y")
