@@ -134,7 +134,7 @@ def _of_kind(task, answer):
             raise ValueError(f"{asks} one Design{got}")
         return answer
     if isinstance(expected, (str, set)):
-        words = {answer} if isinstance(expected, str) else answer
+        words = [answer] if isinstance(expected, str) else answer
         some = f"one of the words {', '.join(task.choices)}" if isinstance(expected, str) else (
             f"a set of words from {', '.join(task.choices)}")
         if not isinstance(words, (set, list, tuple)) or not all(isinstance(word, str) for word in words) or (

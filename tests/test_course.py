@@ -120,6 +120,7 @@ def test_answers_of_the_wrong_kind_to_the_other_kinds(monkeypatch):
     course.exercise("99.4", lambda: [1.0, 0.0], "look up", {"swapped": lambda: [0.0, 1.0]})
     for number, wrong, words in (
             ("99.1", "hail", "one of the words sun, rain, snow"), ("99.1", 1, "one of the words"),
+            ("99.1", ["rain"], "one of the words"),
             ("99.2", "sun", "a set of words from sun, rain, snow"), ("99.2", {1}, "a set of words"),
             ("99.3", 1, "True or False"), ("99.3", "True", "True or False"), ("99.4", 1.0, "2 numbers"),
             ("99.4", [True, False], "2 numbers")):
