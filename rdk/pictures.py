@@ -202,7 +202,8 @@ def why(figure, metric, contributions, before, after, baseline_name):
     for i, step in enumerate(steps):
         axes.barh(i, step, left=edges[i], color=BLUE if step >= 0 else ORANGE, hatch="" if step >= 0 else "//",
                   edgecolor="white", height=0.7)
-        axes.text(max(edges[i], edges[i + 1]), i, f" {step:+.3g}", va="center", fontsize=8)
+        axes.text(max(edges[i], edges[i + 1]), i, f" {step:+.3g}", va="center", fontsize=8,
+                  bbox=dict(facecolor="white", edgecolor="none", pad=0.5))
     axes.axvline(before, color=GREY, ls=":")
     axes.axvline(after, color=BLACK, ls="--")
     axes.set_yticks(range(len(names)), names, fontsize=8)
@@ -226,6 +227,7 @@ def curve(figure, name, metric, values, nominal, band, here, rovers):
     axes.plot(*here, "o", color=BLACK, ms=9, label="this design")
     if rovers is not None:
         _rovers(axes, *rovers)
+    axes.margins(y=0.1)                                  # room for a rover's name above its mark
     axes.set(xlabel=label(name), ylabel=label(metric))
     axes.legend(loc="lower left", bbox_to_anchor=(0, 0.99), ncols=4, fontsize=8, frameon=False, borderpad=0)
     return (f"{label(metric)} against {label(name)}: from {nominal[0]:.3g} at {values[0]:.3g} to {nominal[-1]:.3g} at "
