@@ -47,6 +47,7 @@ STYLE = """<style>
 .rdk-picture {max-width: 100%; height: auto}
 .rdk-waiting {opacity: 0.4}
 .rdk-readout thead th {border-bottom: 1px solid #767676}
+.rdk-explorer a {color: #0055AA; text-decoration: underline}
 .rdk-explorer [role=alert] {border-left: 4px solid #D55E00; padding-left: 6px}
 </style>"""
 # JupyterLab takes keys that are pressed in a menu for its own: arrows move from cell to cell, "y" changes a cell's kind.

@@ -28,6 +28,10 @@ LABELS = {
 """Axis labels of the metrics that the explorer offers."""
 
 
+ABOVE = dict(loc="lower left", bbox_to_anchor=(0, 0.99), ncols=4, fontsize=8, frameon=False, borderpad=0)
+"""A legend above the axes: quicker than one that looks for an empty corner, and in nobody's way."""
+
+
 def label(name):
     """Axis label with unit of a metric, a design variable or another field."""
     if name in DESIGN_SPACE:
@@ -168,18 +172,17 @@ def stress(figure, result, design, scenario, model):
 
 def among_rovers(figure, result, rovers, spans=None):
     """Range against mass: this design, with its intervals, among published rovers on the same mission."""
-    axes = _axes(figure, margins=dict(left=0.11, right=0.97, top=0.95, bottom=0.14))
+    axes = _axes(figure, margins=dict(left=0.11, right=0.97, top=0.92, bottom=0.14))
     mass_kg, range_km, names = rovers
     _rovers(axes, mass_kg, range_km, names)
     if spans is not None:
         (x0, x1), (y0, y1) = spans
         axes.plot([x0, x1], [result.range_km] * 2, color=BLUE, lw=1.2)
         axes.plot([result.total_mass_kg] * 2, [y0, y1], color=BLUE, lw=1.2)
-    axes.plot(result.total_mass_kg, result.range_km, "o", color=BLUE, ms=10)
-    axes.annotate("this design", (result.total_mass_kg, result.range_km), xytext=(8, 7), textcoords="offset points",
-                  fontsize=9, color=BLUE, weight="bold")
+    axes.plot(result.total_mass_kg, result.range_km, "o", color=BLUE, ms=10, label="this design, with its intervals")
+    axes.legend(**ABOVE)
     axes.set(xlabel="total mass (kg), logarithmic", ylabel="range (km)", xscale="log")
-    axes.set_ylim(*(np.array([-0.06, 1.1]) * max(*range_km, result.range_km, 1)))
+    axes.set_ylim(*(np.array([-0.1, 1.1]) * max(*range_km, result.range_km, 1)))
     ticks = [5, 10, 20, 50, 100, 200]
     axes.set_xticks(ticks, [f"{t}" for t in ticks])
     axes.minorticks_off()
@@ -213,7 +216,8 @@ def why(figure, metric, contributions, before, after, baseline_name):
     axes.set_xlabel(label(metric))
     axes.set_title(f"{baseline_name} (dotted) {before:.3g} to this design (dashed) {after:.3g}", fontsize=9, loc="left")
     if not steps:
-        axes.text(0.5, 0.5, f"the same {label(metric)} as {baseline_name}", ha="center", transform=axes.transAxes)
+        axes.text(0.5, 0.5, f"the same {label(metric)} as {baseline_name}", ha="center", transform=axes.transAxes,
+                  backgroundcolor="white")
         return f"No difference in {label(metric)} between this design and {baseline_name}: both {after:.3g}."
     words = "; ".join(f"{n} {s:+.3g}" for n, s in zip(names, steps))
     return f"Bars that add up from {before:.3g} ({baseline_name}) to {after:.3g} in {label(metric)}: {words}."
@@ -229,7 +233,8 @@ def curve(figure, name, metric, values, nominal, band, here, rovers):
         _rovers(axes, *rovers)
     axes.margins(y=0.1)                                  # room for a rover's name above its mark
     axes.set(xlabel=label(name), ylabel=label(metric))
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 0.99), ncols=4, fontsize=8, frameon=False, borderpad=0)
+    axes.margins(y=0.1)                                  # room for the names of rovers
+    axes.legend(**ABOVE)
     return (f"{label(metric)} against {label(name)}: from {nominal[0]:.3g} at {values[0]:.3g} to {nominal[-1]:.3g} at "
             f"{values[-1]:.3g}; this design has {here[1]:.3g} at {here[0]:.3g}.")
 

@@ -71,8 +71,8 @@ def in_lab(point_design):
 
 @pytest.fixture
 def in_voila(page, tmp_path):
-    """The explorer of notebook 06 as an app."""
-    with browser.voila(tmp_path, "06_point_design.ipynb") as address:
+    """The explorer as an app."""
+    with browser.voila(tmp_path, "app.ipynb") as address:
         page.goto(address)
         yield shown(page)
 
