@@ -106,6 +106,13 @@ def _rovers(axes, x, y, names, colour=BLACK):
                       color=colour, annotation_clip=True)
 
 
+def _rows(axes, names):
+    """Names of bars at the left edge: as texts they take half the time of tick labels."""
+    axes.set_yticks([])
+    for i, name in enumerate(names):
+        axes.text(-0.015, i, name, ha="right", va="center", fontsize=8, transform=axes.get_yaxis_transform())
+
+
 def log(figure, result, scenario, soc_initial=1.0):
     """Sunlight and load, charge, and distance, hour by hour."""
     log = result.log
@@ -138,7 +145,7 @@ def mass(figure, result):
     items = dict(sorted(items.items(), key=lambda item: item[1]))
     axes = _axes(figure, margins=dict(left=0.2, right=0.92, top=0.9, bottom=0.13))
     axes.barh(range(len(items)), list(items.values()), color=BLUE)
-    axes.set_yticks(range(len(items)), list(items))
+    _rows(axes, items)
     for i, value in enumerate(items.values()):
         axes.text(value, i, f" {value:.2f}", va="center", fontsize=8)
     axes.set(xlabel="mass (kg)", xlim=(0, max(items.values()) * 1.15))
@@ -209,7 +216,7 @@ def why(figure, metric, contributions, before, after, baseline_name):
                   bbox=dict(facecolor="white", edgecolor="none", pad=0.5))
     axes.axvline(before, color=GREY, ls=":")
     axes.axvline(after, color=BLACK, ls="--")
-    axes.set_yticks(range(len(names)), names, fontsize=8)
+    _rows(axes, names)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.use_sticky_edges = False                        # bars would pin the limits to their ends
     axes.margins(x=0.14)
