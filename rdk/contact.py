@@ -8,11 +8,17 @@ from __future__ import annotations
 import numpy as np
 
 NODES = 12                                               # Gauss-Legendre nodes on each of the two arcs
+BRAKING_NODES = 60                                       # the shear of a braking wheel changes sign within an arc
 BLOCK = 512                                              # lanes whose (2, NODES, lanes) arrays stay in cache
 
-_x, _w = np.polynomial.legendre.leggauss(NODES)
-_U = (_x[:, None] + 1) / 2                               # nodes on [0, 1], as a column
-_W = _w / 2
+
+def rule_of(nodes):
+    """Gauss-Legendre nodes on [0, 1], as a column, and their weights."""
+    x, w = np.polynomial.legendre.leggauss(nodes)
+    return (x[:, None] + 1) / 2, w / 2
+
+
+DRIVING, BRAKING = rule_of(NODES), rule_of(BRAKING_NODES)
 _STEP_DONE = 1e-5                                        # Newton converges quadratically: what is left is ~1e-9
 _HALF_PI = np.pi / 2
 
@@ -27,18 +33,19 @@ def in_blocks(solve, lanes, shape):
     return [a if shape else a.item() for a in joined]
 
 
-def forces(theta_1, s, patch, jacobian=False):
+def forces(theta_1, s, patch, jacobian=False, rule=DRIVING):
     """Vertical load, drawbar pull and torque of the stress integrals, and their derivatives if asked.
 
     theta = a theta_1 with a(u) from theta_m / theta_1 = kappa to 1 on the front arc and from kappa to 0 on the
     rear one. The rear's theta* at a node is then the front's theta at the same u: one stress serves both arcs.
     """
     r, b, A, n, c, tan_phi, K, c1, c2 = patch
+    u, w = rule
     kappa = c1 + c2 * np.abs(s)
-    a = np.empty((2, NODES, theta_1.size))
-    np.multiply(_U, 1 - kappa, out=a[0])
+    a = np.empty((2, len(u), theta_1.size))
+    np.multiply(u, 1 - kappa, out=a[0])
     a[0] += kappa
-    np.multiply(1 - _U, kappa, out=a[1])
+    np.multiply(1 - u, kappa, out=a[1])
     theta = a * theta_1
     sin, sin_1 = np.sin(theta), np.sin(theta_1)
     cos, cos_1 = np.sqrt(1 - sin * sin), np.sqrt(1 - sin_1 * sin_1)      # angles are 0 to 90 deg; twice as fast as cos
@@ -54,8 +61,8 @@ def forces(theta_1, s, patch, jacobian=False):
     vertical = sigma * cos + tau * sin
     pull = tau * cos - sigma * sin
     span = np.stack([theta_1 * (1 - kappa), theta_1 * kappa]) * (b * r)  # area of each arc
-    per_area_v, per_area_p = _W @ vertical, _W @ pull
-    totals = [(span * per_area_v).sum(0), (span * per_area_p).sum(0), (span * (_W @ tau)).sum(0) * r]
+    per_area_v, per_area_p = w @ vertical, w @ pull
+    totals = [(span * per_area_v).sum(0), (span * per_area_p).sum(0), (span * (w @ tau)).sum(0) * r]
     if not jacobian:
         return totals
     steepness = sigma * n / depth                                        # d sigma / d depth
@@ -71,21 +78,21 @@ def forces(theta_1, s, patch, jacobian=False):
         p_x = tau_x * cos
         p_x -= sigma_x * sin
         p_x -= theta_x * vertical
-        return ((span * (_W @ v_x) + span_x * per_area_v).sum(0), (span * (_W @ p_x) + span_x * per_area_p).sum(0))
+        return ((span * (w @ v_x) + span_x * per_area_v).sum(0), (span * (w @ p_x) + span_x * per_area_p).sum(0))
 
     by_theta = derivative(a, steepness * (sin_1 - a[0] * sin_f), (1 - a) - (1 - s) * (cos_1 - a * cos), span / theta_1)
     if jacobian == "entry":
         return totals, by_theta
     kappa_s = c2 * np.copysign(1.0, s) * theta_1
     theta_s = np.empty_like(a)
-    np.multiply(1 - _U, kappa_s, out=theta_s[0])
+    np.multiply(1 - u, kappa_s, out=theta_s[0])
     theta_s[1] = theta_s[0]
     span_s = np.stack([-kappa_s, kappa_s]) * (b * r)
     by_slip = derivative(theta_s, -steepness * sin_f * theta_s[0], chord - theta_s * (1 - (1 - s) * cos), span_s)
     return totals, by_theta, by_slip
 
 
-def entry_angle(patch, s, target, with_pull):
+def entry_angle(patch, s, target, with_pull, rule=DRIVING):
     """Entry angle where F_z = target, or sqrt(F_z^2 + DP^2) = target in lanes with `with_pull` = 1; F_z and DP there.
 
     NaN where there is none. Newton in log-log coordinates: the load is close to a power of the entry angle, so few
@@ -103,7 +110,7 @@ def entry_angle(patch, s, target, with_pull):
     for _ in range(60):                                  # bisection alone needs 50; Newton needs 4 or 5
         if not lane.size:
             break
-        (load, pull, _), (load_t, pull_t) = forces(theta, s, patch, "entry")
+        (load, pull, _), (load_t, pull_t) = forces(theta, s, patch, "entry", rule)
         held = np.sqrt(load * load + with_pull * pull * pull)
         slope = (load * load_t + with_pull * pull * pull_t) / held * theta
         held = np.where(load > 0, held, 0.0)
@@ -130,6 +137,24 @@ def entry_angle(patch, s, target, with_pull):
     return result
 
 
+def carried(patch, s, load):
+    """Pull, torque, sinkage and entry angle of wheels that carry `load` at slip s."""
+    theta = np.empty_like(load)
+    for lane, rule in ((s >= 0, DRIVING), (s < 0, BRAKING)):
+        if lane.any():
+            theta[lane] = entry_angle(patch[:, lane], s[lane], load[lane], np.zeros(lane.sum()), rule)[0]
+    return *settled(theta, s, patch)[1:], patch[0] * (1 - np.cos(theta)), theta
+
+
+def settled(theta, s, patch):
+    """Load, pull and torque, each lane by the rule for its slip: what is handed out once angle and slip are found."""
+    found, brakes = forces(theta, s, patch), np.flatnonzero(s < 0)
+    if brakes.size:
+        for whole, part in zip(found, forces(theta[brakes], s[brakes], patch[:, brakes], rule=BRAKING)):
+            whole[brakes] = part
+    return found
+
+
 def slope(patch, slip, theta_1, load, pull, limit_deg):
     """Slope in degrees from entry angle and forces at the capability slip; 0 for buried lanes and where nothing pulls."""
     load = load.copy()
@@ -150,12 +175,25 @@ def _brakes(patch, load, low):
     return forces(theta_limit, low, patch)[0] > load
 
 
-def slip_balance(patch, load, required, low, high, theta_high, pull_high, guess):
-    """Slip balance of flat lanes, given angle and pull at the high end of the slip interval and a first guess of slip."""
+def slip_balance(patch, *lanes):
+    """Slip balance of flat lanes, given angle and pull at the high end of the slip interval and a first guess of slip.
+
+    Lanes that turn out to brake are balanced once more by the rule for braking.
+    """
+    found = _slip_balance(patch, *lanes, DRIVING)
+    brakes = np.flatnonzero(found[0] < 0)
+    if brakes.size:
+        again = _slip_balance(patch[:, brakes], *(a[brakes] for a in lanes), BRAKING)
+        for whole, part in zip(found, again):
+            whole[brakes] = part
+    return found
+
+
+def _slip_balance(patch, load, required, low, high, theta_high, pull_high, guess, rule):
     unsure = np.flatnonzero(~((required >= 0) & _brakes(patch, load, low)))
     surplus_low = np.zeros(load.shape, bool)
     if unsure.size:
-        _, _, pull_low = entry_angle(patch[:, unsure], low[unsure], load[unsure], np.zeros(unsure.size))
+        _, _, pull_low = entry_angle(patch[:, unsure], low[unsure], load[unsure], np.zeros(unsure.size), rule)
         surplus_low[unsure] = pull_low > required[unsure]
     buried = np.isnan(pull_high)
     crossing = ~buried & (surplus_low == (pull_high < required))
@@ -165,17 +203,17 @@ def slip_balance(patch, load, required, low, high, theta_high, pull_high, guess)
     lane = np.flatnonzero(crossing)
     if lane.size:
         slip[lane], theta[lane] = _newton_balance(patch[:, lane], load[lane], required[lane], low[lane], high[lane],
-                                                  theta_high[lane], guess[lane])
+                                                  theta_high[lane], guess[lane], rule)
     free = np.flatnonzero(~crossing & ~stalled)
     if free.size:                                        # surplus at both ends: the wheel rolls without slip
-        theta[free], _, _ = entry_angle(patch[:, free], slip[free], load[free], np.zeros(free.size))
-    _, pull, torque = forces(theta, slip, patch)
+        theta[free], _, _ = entry_angle(patch[:, free], slip[free], load[free], np.zeros(free.size), rule)
+    _, pull, torque = forces(theta, slip, patch, rule=rule)
     buried = np.isnan(pull)                              # also where the soil gives way inside the slip interval
     slip[buried] = np.nan
     return slip, pull, torque, patch[0] * (1 - np.cos(theta)), theta, stalled | buried, buried
 
 
-def _newton_balance(patch, load, required, low, high, theta, guess):
+def _newton_balance(patch, load, required, low, high, theta, guess, rule):
     """Entry angle and slip of lanes whose balance is bracketed: Newton on both, bisection on slip for the rest."""
     s = np.clip(guess, low, high)
     slip_out, theta_out = np.full(load.shape, np.nan), np.full(load.shape, np.nan)
@@ -184,7 +222,7 @@ def _newton_balance(patch, load, required, low, high, theta, guess):
     for _ in range(12):
         if not lane.size:
             break
-        (fz, dp, _), (fz_t, dp_t), (fz_s, dp_s) = forces(theta, s, patch, "entry and slip")
+        (fz, dp, _), (fz_t, dp_t), (fz_s, dp_s) = forces(theta, s, patch, "entry and slip", rule)
         f, g = load - fz, required - dp
         det = fz_t * dp_s - fz_s * dp_t
         d_theta, d_s = (f * dp_s - g * fz_s) / det, (g * fz_t - f * dp_t) / det
@@ -201,17 +239,17 @@ def _newton_balance(patch, load, required, low, high, theta, guess):
     if lost.size:
         patch, load, required, low, high = everything
         slip_out[lost], theta_out[lost] = _bracketed_balance(patch[:, lost], load[lost], required[lost], low[lost],
-                                                             high[lost])
+                                                             high[lost], rule)
     return slip_out, theta_out
 
 
-def _bracketed_balance(patch, load, required, low, high):
+def _bracketed_balance(patch, load, required, low, high, rule):
     """Slip balance by a bracketing root finder on slip alone, the entry angle solved anew at each slip."""
     from scipy.optimize.elementwise import find_root
 
     def surplus(s, index):
         i = index.astype(int)
-        return entry_angle(patch[:, i], s, load[i], np.zeros(i.size))[2] - required[i]
+        return entry_angle(patch[:, i], s, load[i], np.zeros(i.size), rule)[2] - required[i]
 
     s = find_root(surplus, (low, high), args=(np.arange(load.size),), tolerances={"xatol": 1e-12}).x
-    return s, entry_angle(patch, s, load, np.zeros_like(load))[0]
+    return s, entry_angle(patch, s, load, np.zeros_like(load), rule)[0]

@@ -166,9 +166,7 @@ def wheel_forces(wheel, soil, vertical_load_n, slip, *, transition_c1=0.4, trans
 
     def solve(lanes):
         patch, (load, slip) = lanes[:9], lanes[9:]
-        theta_1, _, _ = contact.entry_angle(patch, slip, load, np.zeros_like(load))
-        _, pull, torque = contact.forces(theta_1, slip, patch)
-        return pull, torque, patch[0] * (1 - np.cos(theta_1)), theta_1
+        return contact.carried(patch, slip, load)
 
     return WheelForces(*contact.in_blocks(solve, lanes, shape))
 

@@ -96,7 +96,7 @@ def test_kernel_agrees_with_the_scalar_transcription(wheel, soil, load, slip):
     if np.isnan(expected["entry_angle_rad"]):
         assert np.isnan(found).all()
         return
-    # the transcription is exact; 12 nodes an arc are worst where a braking wheel's shear changes sign
+    # the transcription is exact; what is promised of any wheel
     assert found.drawbar_pull_n == pytest.approx(expected["drawbar_pull_n"], abs=5e-4 * load)
     scale = max(abs(expected["torque_nm"]), 0.1 * load * wheel.radius_m)
     assert found.torque_nm == pytest.approx(expected["torque_nm"], abs=2e-3 * scale)
@@ -105,13 +105,15 @@ def test_kernel_agrees_with_the_scalar_transcription(wheel, soil, load, slip):
 
 @settings(quick, max_examples=150)
 @given(wheels, st.builds(Soil, st.floats(0.5, 1.5), st.floats(0, 20), st.floats(100, 5000), st.floats(0, 3),
-                         st.floats(15, 55), st.floats(1, 30)), loads, st.floats(0, 0.95))
-def test_driving_wheel_agrees_with_the_scalar_transcription_on_any_soil(wheel, soil, load, slip):
+                         st.floats(15, 55), st.floats(2, 30)), loads, slips)
+@example(WHEEL, dataclasses.replace(MARE, shear_modulus_mm=2.0), 6.0, -0.3)      # its shear changes sign within an arc
+def test_kernel_agrees_with_the_scalar_transcription_on_any_soil(wheel, soil, load, slip):
     found, expected = wheel_forces(wheel, soil, load, slip), second_opinion(wheel, soil, load, slip)
     assume(not np.isnan(expected["entry_angle_rad"]))
     # 5e-5 of the load is reached at n near 0.5, where the stress starts with a vertical tangent
     assert found.drawbar_pull_n == pytest.approx(expected["drawbar_pull_n"], abs=2e-4 * load)
-    assert found.torque_nm == pytest.approx(expected["torque_nm"], rel=1e-3)
+    scale = max(abs(expected["torque_nm"]), 0.1 * load * wheel.radius_m)
+    assert found.torque_nm == pytest.approx(expected["torque_nm"], abs=1e-3 * scale)
     assert found.sinkage_m == pytest.approx(expected["sinkage_m"], rel=1e-3)
 
 
@@ -119,15 +121,11 @@ def test_quadrature_has_converged():
     wheel, soil, load, rng = random_wheels(4000, seed=5)
     slip = rng.uniform(-0.9, 0.95, 4000)
     found = wheel_forces(wheel, soil, load, slip)
-    nodes, weights = np.polynomial.legendre.leggauss(200)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(contact, "NODES", 200)
-        patch.setattr(contact, "_U", (nodes[:, None] + 1) / 2)
-        patch.setattr(contact, "_W", weights / 2)
-        exact = wheel_forces(wheel, soil, load, slip)
+    lanes, _ = rdk.terramechanics._lanes(wheel, soil, 0.4, 0.2, 0.6, 1.0)
+    theta, _, pull = contact.entry_angle(lanes, slip, load, np.zeros_like(load), contact.rule_of(400))
     # a tenth of what is promised against an exact integral (0.05 % of the load)
-    assert np.nanmax(np.abs(found.drawbar_pull_n - exact.drawbar_pull_n) / load) < 1e-4
-    np.testing.assert_allclose(found.sinkage_m, exact.sinkage_m, rtol=5e-5)
+    assert np.nanmax(np.abs(found.drawbar_pull_n - pull) / load) < 5e-5
+    np.testing.assert_allclose(found.entry_angle_rad, theta, rtol=2e-5)
 
 
 def test_forces_are_the_integrals_of_the_contact_stresses():
@@ -452,11 +450,11 @@ def test_solvers_stand_extreme_soils_and_loads():
         balance, capability = slip_balance(wheel, soil, load, pull), slope_capability(wheel, soil, load)
         low, high = (wheel_forces(wheel, soil, load, end).drawbar_pull_n for end in (-0.9, 0.95))
     solved = np.isfinite(found.entry_angle_rad)
-    carried = contact.forces(found.entry_angle_rad[solved], slip[solved], lanes[:, solved])[0]
+    carried = contact.settled(found.entry_angle_rad[solved], slip[solved], lanes[:, solved])[0]
     np.testing.assert_allclose(carried, load[solved], rtol=1e-4)  # 2e-5 was the worst of 60,000
     assert 0.5 < solved.mean() < 1
-    inner = ~balance.stalled & ~((low > pull) & (high > pull))
-    carried, pulled, _ = contact.forces(balance.entry_angle_rad[inner], balance.slip[inner], lanes[:, inner])
+    inner = ~balance.stalled & ((low <= pull) | (high <= pull))          # low is NaN where braking buries
+    carried, pulled, _ = contact.settled(balance.entry_angle_rad[inner], balance.slip[inner], lanes[:, inner])
     np.testing.assert_allclose(carried, load[inner], rtol=1e-3)
     np.testing.assert_allclose(pulled / load[inner], pull[inner] / load[inner], atol=1e-3)
     assert inner.sum() > 500 and np.array_equal(np.isnan(balance.slip), balance.buried)
