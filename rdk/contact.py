@@ -150,7 +150,7 @@ def settled(theta, s, patch):
     """Load, pull and torque, each lane by the rule for its slip: what is handed out once angle and slip are found."""
     found, brakes = forces(theta, s, patch), np.flatnonzero(s < 0)
     if brakes.size:
-        for whole, part in zip(found, forces(theta[brakes], s[brakes], patch[:, brakes], rule=BRAKING)):
+        for whole, part in zip(found, forces(theta[brakes], s[brakes], patch[:, brakes], False, BRAKING)):
             whole[brakes] = part
     return found
 
@@ -207,7 +207,7 @@ def _slip_balance(patch, load, required, low, high, theta_high, pull_high, guess
     free = np.flatnonzero(~crossing & ~stalled)
     if free.size:                                        # surplus at both ends: the wheel rolls without slip
         theta[free], _, _ = entry_angle(patch[:, free], slip[free], load[free], np.zeros(free.size), rule)
-    _, pull, torque = forces(theta, slip, patch, rule=rule)
+    _, pull, torque = forces(theta, slip, patch, False, rule)
     buried = np.isnan(pull)                              # also where the soil gives way inside the slip interval
     slip[buried] = np.nan
     return slip, pull, torque, patch[0] * (1 - np.cos(theta)), theta, stalled | buried, buried
