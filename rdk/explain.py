@@ -106,9 +106,12 @@ def limits(design, scenario, performance, model=Model()):
         Range, slope, torque, energy balance, obstacle, stall, and the temperatures at noon and in the night.
     """
     p, s = performance, scenario
+    slope = f"{s.slope_deg:g} deg at slip {model.slope_capability_slip:g}"
+    if p.slope_capability_deg < s.slope_deg and not p.stalled:       # some wheels pull more at a higher slip
+        slope += f" (climbed at slip {p.slip:.2f})"
     return [
         Limit("range_km", bool(p.range_km > 0), f"above 0, limit {s.traverse_limit_km:g} km"),
-        Limit("slope_capability_deg", bool(p.slope_capability_deg >= s.slope_deg), f"{s.slope_deg:g} deg"),
+        Limit("slope_capability_deg", bool(p.slope_capability_deg >= s.slope_deg), slope),
         Limit("wheel_torque_nm", bool(p.wheel_torque_nm <= design.peak_wheel_torque_nm),
               f"at most {design.peak_wheel_torque_nm:.3g} N m"),
         Limit("energy_balance_pct", bool(p.energy_balance_pct >= 0), "0 % or more"),

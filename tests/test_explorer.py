@@ -536,6 +536,20 @@ def test_cancel_ends_the_search_and_keeps_what_it_found(explorer):
     np.testing.assert_array_equal(space["front"].designs.wheel_radius_m, explorer.front.designs.wheel_radius_m)
 
 
+def test_a_slope_beyond_the_capability_may_be_climbed_at_a_higher_slip():
+    rover, highland = rdk.rover("Rashid-1"), rdk.scenario("highland_slope_capability")
+
+    def row(slope_deg):
+        mission = dataclasses.replace(highland, slope_deg=slope_deg)
+        result = rdk.evaluate(rover, mission)
+        return result, next(limit for limit in explain.limits(rover, mission, result) if "slope" in limit.metric)
+
+    (gentle, met), (steep, missed), (wall, stalled) = row(5.0), row(15.0), row(30.0)
+    assert met.met and met.words == "5 deg at slip 0.6" and gentle.slip < 0.6
+    assert not missed.met and missed.words == f"15 deg at slip 0.6 (climbed at slip {steep.slip:.2f})"
+    assert not stalled.met and stalled.words == "30 deg at slip 0.6" and wall.stalled
+
+
 def test_the_front_grows_on_the_screen(explorer, monkeypatch):
     def unhurried(*args, on_generation, **problem):
         """The search, waiting for each picture: a fast one would be over before the second is drawn."""
