@@ -21,7 +21,7 @@ from .mission import evaluate
 from .sampling import METRICS, decode, drawn, perturbed, random_designs, replaced
 from .terramechanics import wheel_forces
 from .tradespace import search
-from .validation import single_wheel_conditions
+from .validation.wheels import single_wheel_conditions
 
 SHEAR_SCALES = (0.70, 0.85, 1.00, 1.15, 1.30)
 """Factors on the shear stress in the paper's robustness study."""

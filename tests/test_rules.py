@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import rdk
-from rdk import catalog, contact, ledger, rules, tradespace, validation
+from rdk import catalog, contact, rules, tradespace, validation
+from rdk.validation import searches
 
 MARE, HIGHLAND = rdk.scenario("equatorial_mare_traverse"), rdk.scenario("highland_slope_capability")
 NAMES = rdk.scenario_names("canonical")
@@ -321,15 +322,15 @@ def small_ledger():
         sizes.append((generations, options))
         return study(*arguments, population=12, generations=min(generations, 90), **options)
 
-    patch.setattr(ledger, "study", small_study)
-    patch.setattr(ledger, "pareto_front", lambda scenario, **options: pareto_front(
+    patch.setattr(searches, "study", small_study)
+    patch.setattr(searches, "pareto_front", lambda scenario, **options: pareto_front(
         scenario, population=12, **options | {"generations": 5}))
     patch.setattr(rules, "rediscovery", lambda **options: rediscovery(
         population=12, **options | {"seeds": options["seeds"][:2]}))
     baselines = rules.rediscovery_baselines
     patch.setattr(rules, "rediscovery_baselines", lambda found, **options: baselines(
         found, **options | {"count": 500}))
-    patch.setattr(ledger.rules, "OBSTACLE_HEIGHTS_M", (0.0, 0.08, 0.12))
+    patch.setattr(searches.rules, "OBSTACLE_HEIGHTS_M", (0.0, 0.08, 0.12))
     try:
         yield validation.paper_ledger(("stochastic", "cost")).set_index("id"), sizes
     finally:
@@ -372,10 +373,10 @@ def test_every_study_of_the_ledger_runs_once_at_the_papers_budget(small_ledger):
 
 
 def test_seed_offset_moves_the_searches():
-    patched = ledger.Searches(seed_offset=100)
+    patched = searches.Searches(seed_offset=100)
     calls = []
     patch = pytest.MonkeyPatch()
-    patch.setattr(ledger, "study", lambda scenarios, **options: calls.append(scenarios[0].study.seed) or {})
+    patch.setattr(searches, "study", lambda scenarios, **options: calls.append(scenarios[0].study.seed) or {})
     try:
         patched.canonical  # noqa: B018
     finally:
@@ -386,5 +387,5 @@ def test_seed_offset_moves_the_searches():
 def test_stress_integrals_count_what_the_kernel_does():
     before = contact.forces
     assert contact.forces is before
-    mean = ledger.stress_integrals(rdk.random_designs(50, seed=0), MARE)
+    mean = searches.stress_integrals(rdk.random_designs(50, seed=0), MARE)
     assert 8 < mean < 30 and contact.forces is before, "and the kernel is left as it was"

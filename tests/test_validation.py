@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 import rdk
 import scalar_transcription as scalar
 from rdk import catalog, validation
+from rdk.validation import rows, wheels
 
 TARGETS = catalog.table("paper_targets.csv").set_index("id")
 DETERMINISTIC = TARGETS.index[TARGETS.kind == "deterministic"]
@@ -34,13 +35,13 @@ def masses():
 # ---- single wheels -----------------------------------------------------------------------------------------
 
 def test_one_call_of_the_kernel_solves_every_point(monkeypatch):
-    calls, solve = [], validation.wheel_forces
+    calls, solve = [], wheels.wheel_forces
 
     def counted(*args, **options):
         calls.append(args[3].shape)
         return solve(*args, **options)
 
-    monkeypatch.setattr(validation, "wheel_forces", counted)
+    monkeypatch.setattr(wheels, "wheel_forces", counted)
     table = validation.single_wheel()
     assert calls == [(len(table),)] and len(table) == len(catalog.rows("single_wheel.csv")) > 26
     validation.bootstrap_medians(samples=3)              # reading errors move the measurements, not the model
@@ -284,8 +285,8 @@ def test_a_changed_measurement_changes_its_row(monkeypatch):
         return table.assign(drawbar_pull_n=table.drawbar_pull_n * 2) if name == "single_wheel.csv" else table
 
     monkeypatch.setattr(catalog, "table", other)
-    evidence = validation._Evidence()
-    found = validation._LEDGER["dp_ding"](evidence)[0]
+    evidence = rows.Evidence()
+    found = rows.ROWS["dp_ding"](evidence)[0]
     assert not validation.accepts(TARGETS.accept["dp_ding"], found)
 
 

@@ -1,4 +1,4 @@
-"""The ledger's rows that need searches, at the paper's budgets; `validation.paper_ledger` reads them.
+"""The ledger's rows that need searches, at the paper's budgets.
 
 Each study behind the rows runs once in a ledger, when the first row asks for it. About 150 searches make the
 whole.
@@ -11,11 +11,11 @@ from functools import cached_property
 
 import numpy as np
 
-from . import catalog, contact, rules
-from .mission import evaluate
-from .sampling import random_designs
-from .tradespace import pareto_front, study
-from .validation import _row as ledger_row
+from .. import catalog, contact, rules
+from ..mission import evaluate
+from ..sampling import random_designs
+from ..tradespace import pareto_front, study
+from .rows import ledger_row
 
 TRAVERSE = ("equatorial_mare_traverse", "polar_prospecting", "crater_rim_survey")
 """The scenarios whose fronts trade range, mass and slope capability."""
