@@ -22,6 +22,32 @@ pytestmark = pytest.mark.skipif(browser.CHROMIUM is None, reason="no Chromium or
 OPEN = """async path => { const app = window.jupyterapp; await app.restored;
     const panel = await app.commands.execute('docmanager:open', {path});
     await panel.context.ready; await panel.sessionContext.ready; await panel.sessionContext.shutdown() }"""
+# Moves in the page itself, where what is visible cannot change between the choice and the move; returns how many of a kind.
+WALK = """async ([moves, names]) => {
+    let seed = 5;
+    const random = count => { seed = seed * 48271 % 2147483647; return seed % count };
+    const root = document.querySelector('.rdk-explorer'), done = {buttons: 0, menus: 0, keys: 0};
+    const visible = what => [...root.querySelectorAll(what)].filter(e => e.offsetParent);
+    const keys = ['ArrowRight', 'ArrowLeft', 'PageUp', 'PageDown', 'Home', 'End'];
+    for (let i = 0; i < moves; i++) {
+        const handles = visible('.noUi-handle'), menus = visible('.widget-dropdown select'), kind = random(100);
+        if (kind < 20 || !handles.length) {
+            const buttons = visible('button').filter(b => names.includes(b.innerText.trim()));
+            buttons[random(buttons.length)].click();
+            done.buttons++;
+        } else if (kind < 35 && menus.length) {
+            const menu = menus[random(menus.length)];
+            menu.selectedIndex = random(menu.options.length);
+            menu.dispatchEvent(new Event('change', {bubbles: true}));
+            done.menus++;
+        } else {
+            handles[random(handles.length)].dispatchEvent(new KeyboardEvent('keydown',
+                {key: keys[random(keys.length)], bubbles: true, cancelable: true}));
+            done.keys++;
+        }
+        await new Promise(f => setTimeout(f, 30));
+    }
+    return done }"""
 ERROR = '[data-mime-type="application/vnd.jupyter.error"]'
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
 KNOWN = {"aria-input-field-name"}  # slider handles have no name: each has a labelled number box beside it
@@ -285,6 +311,33 @@ def test_search_pick_keep_in_jupyterlab(in_lab, tmp_path):
     pick_by_keyboard_and_by_pointer(explorer)
     assert_accessible(explorer)
     keep_and_load(explorer, tmp_path)
+
+
+def shown_values(explorer):
+    """Design and mission as the number boxes and menus show them."""
+    values = {}
+    for page, names in (("rover", rdk.DESIGN_SPACE), ("mission", MISSION_SPACE)):
+        button(explorer, page).click()
+        values |= {name: float(box(explorer, LABELS[name]).input_value()) for name in names if name in LABELS}
+        if page == "rover":
+            values["wheel_count"] = int(box(explorer, "wheels").locator("option:checked").text_content()[0])
+    soil = rdk.soil(box(explorer, "soil").locator("option:checked").text_content())
+    design = rdk.Design(**{name: values[name] for name in rdk.DESIGN_SPACE})
+    return design, rdk.Scenario(name="shown", soil=soil, **{name: values[name] for name in MISSION_SPACE})
+
+
+def test_a_random_walk_of_300_moves(in_lab):
+    explorer = in_lab
+    done = explorer.page.evaluate(WALK, [300, [*VIEWS, "rover", "mission"]])
+    assert min(done.values()) > 20, done
+    explorer.page.wait_for_timeout(1500)                 # the last moves reach the number boxes
+    design, mission = shown_values(explorer)
+    button(explorer, "log").click()
+    expect(explorer.locator(".rdk-waiting")).to_have_count(0)
+    result = rdk.evaluate(design, mission)               # nothing stale is left on the screen
+    settled(explorer, f"{result.total_mass_kg:.2f} kg")
+    settled(explorer, f"{result.slope_capability_deg:.1f} deg")
+    assert_sound(explorer)
 
 
 def test_the_app_in_voila(in_voila, tmp_path):
