@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import rdk
-from rdk import course, exercises  # noqa: F401  registers them
+from rdk import course
 
 REPO = Path(__file__).parents[1]
 PATHS = {path.name[:2]: path for path in sorted((REPO / "notebooks").glob("[0-9][0-9]_*.ipynb"))}
-TASKS = course.EXERCISES
+TASKS = course.exercises()
 MISTAKES = [(number, hint) for number, task in sorted(TASKS.items()) for hint in task.mistakes]
 HEADING = re.compile(r"^### Exercise (\d\d\.\d)\b(.*)$", re.M)
 pytestmark = pytest.mark.filterwarnings("ignore:design outside the class")
@@ -112,7 +112,7 @@ def test_answers_of_the_wrong_kind_to_a_design_task(answer):
 
 
 def test_answers_of_the_wrong_kind_to_the_other_kinds(monkeypatch):
-    monkeypatch.setattr(course, "EXERCISES", dict(TASKS))
+    monkeypatch.setattr(course.judging, "EXERCISES", dict(TASKS))
     course.exercise("99.1", lambda: "sun", "look up", {"too wet": lambda: "rain"},
                     choices=("sun", "rain", "snow"))
     course.exercise("99.2", lambda: {"sun", "rain"}, "look up", choices=("sun", "rain", "snow"))

@@ -24,9 +24,9 @@ RECORDS = {"Design": rdk.Design, "Scenario": rdk.Scenario, "Study": design.Study
            "Wheel": rdk.Wheel,
            "Model": rdk.Model, "Performance": rdk.Performance, "MassBreakdown": mass.MassBreakdown,
            "TraverseLog": mission.TraverseLog, "Front": tradespace.Front}
-MODULES = (catalog, contact, course, design, explain, keep, mass, mission, power, report, sampling,
-           terramechanics,
-           thermal, tradespace, validation.flown, validation.ledger, validation.masses, validation.wheels)
+MODULES = (catalog, contact, course, course.judging, design, explain, keep, mass, mission, power, report,
+           sampling, terramechanics, thermal, tradespace, validation.flown, validation.ledger,
+           validation.masses, validation.wheels)
 SUFFIXES = {
     "_m": "m", "_mm": "mm", "_km": "km", "_m2": "m2", "_kg": "kg", "_n": "N", "_nm": "N m", "_pa": "Pa",
     "_kpa": "kPa",

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import rdk
-from rdk import exercises, keep
+from rdk import keep
+from rdk.course import capstone
 from rdk.design import Study
 from rdk.report import Requirement, report, requirements, write
 
@@ -137,7 +138,7 @@ def test_verdict_and_risks_say_what_the_table_says():
 
 
 def test_front_baseline_and_changed_coefficients_show():
-    front = rdk.pareto_front(exercises.SWIRL, population=8, generations=40, seed=1, constraints=[])
+    front = rdk.pareto_front(capstone.SWIRL, population=8, generations=40, seed=1, constraints=[])
     text = report(RASHID, MARE, "x", front=front, baseline=rdk.rover("Tenacious"), baseline_name="Tenacious",
                   why="slope_capability_deg", model=rdk.Model(drivetrain_efficiency=0.7), draws=20)
     alts = [image["alt"] for image in Page(text).images]
@@ -192,8 +193,8 @@ def test_writing_replaces_the_file_in_one_step(tmp_path, monkeypatch):
 def test_it_prints_on_one_page_of_a4_with_a_full_page_of_notes(tmp_path):
     from playwright.sync_api import sync_playwright
     notes = "\n\n".join(["A choice, and what was given up for it: " + "some sixty words of text, " * 10] * 4)
-    text = report(RASHID, replace(exercises.SWIRL), "Rashid-1 at Reiner Gamma", notes, draws=50,
-                  bounds=exercises.SWIRL_LIMITS)
+    text = report(RASHID, replace(capstone.SWIRL), "Rashid-1 at Reiner Gamma", notes, draws=50,
+                  bounds=capstone.SWIRL_LIMITS)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
         tab = browser.new_page(viewport={"width": 1000, "height": 1300})

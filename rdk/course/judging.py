@@ -1,8 +1,4 @@
-"""Self-checks of the notebooks' exercises: `rdk.check("01.2", answer)`.
-
-An exercise computes its answer with `rdk`; no answer is stored. Typical mistakes are computed too, each with
-the hint meant for it. The exercises themselves are in `exercises`.
-"""
+"""What an exercise is, and how an answer to it is judged."""
 from __future__ import annotations
 
 import dataclasses
@@ -11,10 +7,10 @@ from typing import Callable
 
 import numpy as np
 
-from .design import Design
+from ..design import Design
 
 EXERCISES = {}
-"""Every exercise by its number, filled by `exercises`."""
+"""Every exercise by its number, filled by the modules of the exercises."""
 UNITS = (1e3, 1e-3, 1e2, 1e-2, 1e6, 1e-6, 24.0, 1 / 24, 60.0, 1 / 60, 3.6, 1 / 3.6, np.pi / 180, 180 / np.pi,
          -1.0)
 """Factors by which an answer in another unit is off."""
@@ -75,34 +71,8 @@ def exercise(number, answer, hint, mistakes=None, **options):
     EXERCISES[number] = Exercise(number, answer, hint, mistakes or {}, **options)
 
 
-def check(number, answer):
-    """Tell whether the answer to an exercise is right and, when it is not, what to look at.
-
-    Parameters
-    ----------
-    number : str
-        Notebook and exercise, such as "01.2".
-    answer : float, sequence of float, str, set of str, bool or Design
-        What the exercise asks for, in the unit that it names. An ellipsis, `...`, stands for no answer yet.
-
-    Returns
-    -------
-    Verdict
-        True where right; shows itself as a sentence.
-
-    Raises
-    ------
-    ValueError
-        If there is no such exercise, or the answer is not of the kind asked for.
-
-    Examples
-    --------
-    >>> check("12.1", 0.06)
-    Not yet. A rigid chassis does not climb an obstacle as high as its wheel's radius.
-    >>> bool(check("12.1", 0.12))
-    True
-    """
-    from . import exercises                              # noqa: F401  fills EXERCISES
+def judge(number, answer):
+    """The verdict on the answer to a registered exercise; see `rdk.check`."""
     number = str(number)
     if number not in EXERCISES:
         near = [n for n in EXERCISES if n[:2] == number[:2]] or list(EXERCISES)
@@ -147,7 +117,8 @@ def _of_kind(task, answer):
             raise ValueError(f"{asks} True or False{got}")
         return bool(answer)
     shape = np.shape(expected)
-    asks += {0: " one number", 1: f" {np.size(expected)} numbers"}.get(len(shape), f" numbers of shape {shape}")
+    asks += {0: " one number", 1: f" {np.size(expected)} numbers"}.get(len(shape),
+                                                                       f" numbers of shape {shape}")
     try:
         given = np.asarray(answer)
     except ValueError:                                   # ragged
