@@ -275,6 +275,9 @@ def _nsga2(scenario, study, model, population, generations, first, bounds):
     from pymoo.core.problem import Problem
     from pymoo.operators.crossover.sbx import SBX
     from pymoo.operators.mutation.pm import PM
+    from pymoo.operators.survival.rank_and_crowding.metrics import get_crowding_function
+    from pymoo.core.survival import Survival
+    from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
     Config.warnings["not_compiled"] = False
     signs = np.array([-1.0 if d == "max" else 1.0 for d in study.objectives.values()])
 
@@ -304,8 +307,27 @@ def _nsga2(scenario, study, model, population, generations, first, bounds):
                     f"{value:.3g} in {name}" for value, (name, *_) in zip(G[missed.argmin()], study.constraints)
                     if value > 0)
 
+    class StableSurvival(Survival):
+        """Rank and crowding, as pymoo's. Its sorts leave ties in an order that differs from processor to processor."""
+
+        def _do(self, problem, pop, *args, n_survive=None, **kwargs):
+            F, violation, kept = pop.get("F"), pop.get("CV")[:, 0], []
+            feasible, infeasible = np.flatnonzero(violation <= 0), np.flatnonzero(violation > 0)
+            ranks = NonDominatedSorting().do(F[feasible], n_stop_if_ranked=n_survive) if feasible.size else []
+            for rank, front in enumerate(feasible[members] for members in ranks):
+                crowding = crowding_distance(F[front])
+                for i, distance in zip(front, crowding):
+                    pop[i].set_by_dict(rank=rank, crowding=distance)
+                if len(kept) + len(front) > n_survive:
+                    front = front[np.argsort(-crowding, kind="stable")]
+                kept.extend(front[:n_survive - len(kept)])
+            nearest = infeasible[np.argsort(violation[infeasible], kind="stable")]
+            return pop[kept + list(nearest[:n_survive - len(kept)])]
+
+    crowding_distance = get_crowding_function("cd").do
     algorithm = NSGA2(pop_size=population, sampling=first, crossover=SBX(prob=0.9, eta=15),
-                      mutation=PM(prob=0.9, eta=20), eliminate_duplicates=True)
+                      mutation=PM(prob=0.9, eta=20), survival=StableSurvival(filter_infeasible=False),
+                      eliminate_duplicates=True)
     problem = Mission()
     algorithm.setup(problem, termination=("n_gen", generations), seed=study.seed, verbose=False)
     return algorithm, problem

@@ -147,7 +147,10 @@ def _highland_plateau(evidence):
 
 @ledger_row("front_highland_slope_deg")
 def _highland_slope(evidence):
-    return tuple(evidence.searches.statistics.loc[SHORT["highland"], ["slope_min_deg", "slope_max_deg"]])
+    columns, searches = ["slope_min_deg", "slope_max_deg"], evidence.searches
+    longer = searches.budget.query("scenario == @SHORT['highland']")[columns].to_numpy().round(1).tolist()
+    return tuple(searches.statistics.loc[SHORT["highland"], columns]), (
+        "no objective of this front; {}..{} and {}..{} deg in the two searches of 90 generations".format(*sum(longer, [])))
 
 
 @ledger_row("highland_slope_ceiling_deg")
