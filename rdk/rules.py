@@ -221,8 +221,12 @@ def dominated(front, others):
     """
     mine = _minimised(front.performance, front.study.objectives)
     theirs = np.concatenate([_minimised(other.performance, front.study.objectives) for other in others])
-    no_worse = (theirs[:, None] <= mine).all(-1)
-    return (no_worse & (theirs[:, None] < mine).any(-1)).any(0)
+    return _beaten(mine, theirs)
+
+
+def _beaten(mine, theirs):
+    """Which points (rows, all objectives minimised) some point of theirs dominates."""
+    return ((theirs[:, None] <= mine).all(-1) & (theirs[:, None] < mine).any(-1)).any(0)
 
 
 def _minimised(performance, objectives):
@@ -468,7 +472,7 @@ def _found(target, generation, fronts):
         own = _minimised(target.performance, fronts[0].study.objectives)
         theirs = np.concatenate([_minimised(front.performance, front.study.objectives) for front in fronts])
         row |= dict(distance=min(nearest), distance_worst_seed=max(nearest),
-                    dominated=bool(((theirs <= own).all(1) & (theirs < own).any(1)).any()),
+                    dominated=_beaten(own, theirs).item(),
                     nearest=best[int(np.argmin(target.distances(best)))])
     return row
 

@@ -392,19 +392,18 @@ def attribution(design, baseline, scenario, model=Model()):
     True
     """
     _single(design=design, baseline=baseline, scenario=scenario, model=model)
-    names = [name for name in DESIGN_SPACE if getattr(design, name) != getattr(baseline, name)]
-    count, order = len(names), list(DESIGN_SPACE)
-    takes = (np.arange(2**count)[:, None] >> np.arange(count)) & 1 == 1      # (mixtures, variables): from the design?
-    mixtures = {name: np.where(takes[:, i], getattr(design, name), getattr(baseline, name)) for i, name in enumerate(names)}
-    same = {name: np.full(len(takes), getattr(design, name)) for name in order if name not in names}
-    result = evaluate(Design(**mixtures, **same), scenario, model)
+    differ = np.array([getattr(design, name) != getattr(baseline, name) for name in DESIGN_SPACE])
+    count = int(differ.sum())
+    takes = np.zeros((2**count, len(differ)), bool)                  # (mixtures, variables): from the design?
+    takes[:, differ] = np.arange(2**count)[:, None] >> np.arange(count) & 1
+    result = evaluate(Design(**{name: np.where(takes[:, i], getattr(design, name), getattr(baseline, name))
+                                for i, name in enumerate(DESIGN_SPACE)}), scenario, model)
     size = takes.sum(1)
     share = np.array([math.factorial(k) * math.factorial(count - 1 - k) / math.factorial(count) for k in range(count)])
     # phi_i = sum over mixtures without i of share(size) * (with i - without i), as one matrix
-    weights = np.zeros((len(order), len(takes)))
-    if names:
-        weights[[order.index(name) for name in names]] = np.where(takes.T, share[size - 1],
-                                                                  -share[np.minimum(size, count - 1)])
+    weights = np.zeros(takes.T.shape)
+    if count:
+        weights[differ] = np.where(takes.T[differ], share[size - 1], -share[np.minimum(size, count - 1)])
     contributions = {}
     for name in METRICS:
         values = np.asarray(getattr(result, name), float)

@@ -1,6 +1,5 @@
 """The explorer in a real Chromium: in JupyterLab and as an app served by Voila, by keyboard and by pointer."""
 
-import json
 import os
 import re
 
