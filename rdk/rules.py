@@ -1,7 +1,7 @@
-"""What searches say about designs: rules read off fronts, how far to trust them, and rediscovery, as tables.
+"""What searches say about designs: rules read off fronts, and how far to trust them, as tables.
 
 A rule is a statistic of a front. Each function takes fronts, or runs the searches it needs, and returns a
-tidy pandas table: one row a front, a design, an input or a rover. A single search is one draw from a noisy
+tidy pandas table: one row a front, a design or an input. A single search is one draw from a noisy
 process, so the tables keep the seed; and a search that is not finished leaves variables that no objective
 feels where chance put them.
 """
@@ -15,10 +15,10 @@ import pandas as pd
 
 from . import catalog
 from ._fields import check
-from .design import DESIGN_SPACE, Design, Model
+from .design import DESIGN_SPACE, Model
 from .mission import _mass as mass_of
 from .mission import evaluate
-from .sampling import METRICS, decode, drawn, perturbed, random_designs, replaced
+from .sampling import METRICS, decode, drawn, perturbed, replaced
 from .terramechanics import wheel_forces
 from .tradespace import search
 from .validation.wheels import single_wheel_conditions
@@ -29,11 +29,6 @@ OBSTACLE_HEIGHTS_M = tuple(round(0.02 * i, 2) for i in range(12))
 """Required obstacle heights of the paper's architecture study, 0 to 0.22 m."""
 CEILING_SHARE = 0.01
 """A variable is at a bound when within this share of its searched range from it; the paper names no share."""
-REDISCOVERED = {"Tenacious": "mare_micro", "CADRE-unit": "polar_micro", "Rashid-1": "mare_micro",
-                "Pragyan": "polar_micro", "MoonRanger": "polar_micro", "Yutu-2": "mare_micro"}
-"""Class-generic scenario of each rover of the rediscovery check."""
-CUBE = tuple(name for name, v in DESIGN_SPACE.items() if v.kind == "continuous" and name != "wheelbase_m")
-"""The eight variables of the rediscovery distance: continuous, and read by some sub-model."""
 
 
 # ---- statistics of fronts ----------------------------------------------------------------------------------
@@ -64,7 +59,7 @@ def front_statistics(fronts):
             obstacle_height_m=front.scenario.required_obstacle_height_m,
             generations=len(front.objective_history), designs=len(front))
         if len(front):
-            at = {name: _place(d, name) for name in ("wheel_radius_m", "wheel_width_m", "grouser_height_m",
+            at = {name: place(d, name) for name in ("wheel_radius_m", "wheel_width_m", "grouser_height_m",
                                                      "grouser_count")}
             slope, capped = p.slope_capability_deg, p.range_km >= p.range_km.max() * (1 - 1e-6)
             row |= dict(
@@ -85,7 +80,7 @@ def front_statistics(fronts):
     return pd.DataFrame(rows)
 
 
-def _place(designs, name):
+def place(designs, name):
     """Where a variable lies in its searched range, 0 to 1."""
     variable = DESIGN_SPACE[name]
     return (getattr(designs, name) - variable.low) / (variable.high - variable.low)
@@ -112,11 +107,11 @@ def over_generations(scenarios, seeds, generations, executor=None, **options):
     """
     wanted = sorted({int(check("generations", g, 1, whole=True, scalar=True)) for g in generations})
     jobs = [(scenario, wanted, dict(options, seed=seed)) for scenario in scenarios for seed in seeds]
-    searches = (map if executor is None else executor.map)(_looks, *zip(*jobs))
+    searches = (map if executor is None else executor.map)(fronts_at, *zip(*jobs))
     return front_statistics(front for fronts in searches for front in fronts)
 
 
-def _looks(scenario, generations, options):
+def fronts_at(scenario, generations, options):
     """The fronts of one search at some generations; runs in any process."""
     fronts = []
 
@@ -219,17 +214,18 @@ def dominated(front, others):
     -------
     ndarray of bool, shape (n,)
     """
-    mine = _minimised(front.performance, front.study.objectives)
-    theirs = np.concatenate([_minimised(other.performance, front.study.objectives) for other in others])
-    return _beaten(mine, theirs)
+    mine = minimised(front.performance, front.study.objectives)
+    theirs = np.concatenate([minimised(other.performance, front.study.objectives) for other in others])
+    return beaten(mine, theirs)
 
 
-def _beaten(mine, theirs):
+def beaten(mine, theirs):
     """Which points (rows, all objectives minimised) some point of theirs dominates."""
     return ((theirs[:, None] <= mine).all(-1) & (theirs[:, None] < mine).any(-1)).any(0)
 
 
-def _minimised(performance, objectives):
+def minimised(performance, objectives):
+    """Objectives as columns, each with the sign that makes less better."""
     return np.stack([np.atleast_1d(getattr(performance, name)) * (-1 if way == "max" else 1)
                      for name, way in objectives.items()], axis=1)
 
@@ -391,170 +387,3 @@ def interval_coverage(draws=500, seed=0, level=0.9, experiments=("ding-2011", "h
         experiment=points.experiment, wheel=points.wheel, slip=slip, measured_n=measured,
         nominal_n=wheel_forces(wheel, soils, load, slip).drawbar_pull_n, low_n=low, high_n=high,
         inside=(measured >= low) & (measured <= high)))
-
-
-# ---- rediscovery -------------------------------------------------------------------------------------------
-
-def unit_cube(designs):
-    """Designs as points of the eight-dimensional unit cube of `CUBE`, shape (n, 8)."""
-    return np.stack(np.broadcast_arrays(*(np.atleast_1d(_place(designs, name)) for name in CUBE)), axis=1)
-
-
-@dataclasses.dataclass(frozen=True)
-class _Target:
-    """A published rover on its class-generic mission with its own payload, and its search's mass ceiling."""
-    name: str
-    scenario: object
-    design: Design
-    performance: object
-    ceiling_kg: float
-
-    @classmethod
-    def of(cls, name):
-        if name not in REDISCOVERED:
-            raise ValueError(f"no rover {name!r} in the check; choose from {', '.join(REDISCOVERED)}")
-        design, payload = catalog.rover(name), float(catalog.rover_row(name)["payload_mass_kg"])
-        scenario = dataclasses.replace(catalog.scenario(REDISCOVERED[name]), payload_mass_kg=payload)
-        performance = evaluate(design, scenario)
-        return cls(name, scenario, design, performance, 1.10 * performance.total_mass_kg)
-
-    @property
-    def constraints(self):
-        return self.scenario.study.constraints + (("total_mass_kg", "<=", self.ceiling_kg),)
-
-    def distances(self, designs):
-        return np.linalg.norm(unit_cube(designs) - unit_cube(self.design), axis=1)
-
-
-def rediscovery(rovers=tuple(REDISCOVERED), population=60, generations=(16,), seeds=range(5), executor=None):
-    """Distance of published rovers to the fronts of their missions, under a ceiling of 1.10 times their mass.
-
-    Parameters
-    ----------
-    rovers : sequence of str
-        Among `REDISCOVERED`.
-    population : int
-    generations : sequence of int
-        Where to look; the paper's figure is at 16.
-    seeds : sequence of int
-        One search a seed; the fronts are merged.
-    executor : concurrent.futures.Executor, optional
-        Runs the searches in parallel, with the same result.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a rover and generation: rover, scenario, in_class, generations, mass_kg, ceiling_kg, feasible
-        (the rover itself on that mission), front_designs, distance (to the nearest design of the merged
-        fronts), distance_worst_seed (to the nearest of the worst single search), dominated (some front design
-        is no worse in range, mass and slope capability and better in one), and `nearest`, the design.
-    """
-    wanted = sorted({int(check("generations", g, 1, whole=True, scalar=True)) for g in generations})
-    targets, seeds = [_Target.of(name) for name in rovers], list(seeds)
-    jobs = [(target.scenario, wanted, dict(population=population, seed=seed, constraints=target.constraints))
-            for target in targets for seed in seeds]
-    searches = list((map if executor is None else executor.map)(_looks, *zip(*jobs)))
-    return pd.DataFrame([
-        _found(target, generation, [fronts[g] for fronts in searches[i * len(seeds):(i + 1) * len(seeds)]])
-        for i, target in enumerate(targets) for g, generation in enumerate(wanted)])
-
-
-def _found(target, generation, fronts):
-    """The row of one rover at one generation."""
-    fronts, own_row = [front for front in fronts if len(front)], catalog.rover_row(target.name)
-    row = dict(rover=target.name, scenario=target.scenario.name, in_class=own_row["in_class"] == "True",
-               generations=generation, mass_kg=target.performance.total_mass_kg, ceiling_kg=target.ceiling_kg,
-               feasible=target.performance.feasible, front_designs=sum(map(len, fronts)), distance=np.nan,
-               distance_worst_seed=np.nan, dominated=False, nearest=None)
-    if fronts:
-        nearest = [target.distances(front.designs).min() for front in fronts]
-        best = fronts[int(np.argmin(nearest))].designs
-        own = _minimised(target.performance, fronts[0].study.objectives)
-        theirs = np.concatenate([_minimised(front.performance, front.study.objectives) for front in fronts])
-        row |= dict(distance=min(nearest), distance_worst_seed=max(nearest),
-                    dominated=_beaten(own, theirs).item(),
-                    nearest=best[int(np.argmin(target.distances(best)))])
-    return row
-
-
-def rediscovery_baselines(found, count=20000, seed=0):
-    """What distances chance gives, for the rovers of a rediscovery check.
-
-    Parameters
-    ----------
-    found : pandas.DataFrame
-        From `rediscovery`, one row a rover: its number of front designs sets how many chances chance gets.
-    count : int
-        Random designs a rover.
-    seed : int
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a rover: rover, random_pair (mean distance of two random points), feasible_fraction (share of
-        random designs that are feasible on its mission), feasible_pair (mean distance of two of those),
-        centroid (distance of the rover to their centroid), nearest_feasible (mean distance of the nearest of
-        as many random feasible designs as the front has), nearest_capped and nearest_capped_low (the same
-        under the rover's mass ceiling, and its 5 % quantile), capped_designs (how many random designs met
-        it).
-    """
-    random, rows = np.random.default_rng(seed), []
-    count = int(check("count", count, 100, whole=True, scalar=True))
-    points = random_designs(count, seed=seed)
-    cube = unit_cube(points)
-    for row in found.itertuples():
-        target = _Target.of(row.rover)
-        feasible = evaluate(points, target.scenario).feasible
-        capped = _lighter_than(target, count, seed + 1)
-        capped = capped[evaluate(capped, target.scenario).feasible]
-        chances = max(row.front_designs, 1)
-        near = {name: _nearest(target.distances(designs), chances, random) for name, designs in
-                dict(feasible=points[feasible], capped=capped).items()}
-        rows.append(dict(
-            rover=row.rover, random_pair=_pair(cube, random), feasible_fraction=feasible.mean(),
-            feasible_pair=_pair(cube[feasible], random),
-            centroid=np.linalg.norm(cube[feasible].mean(0) - unit_cube(target.design)[0]),
-            nearest_feasible=near["feasible"].mean(), nearest_capped=near["capped"].mean(),
-            nearest_capped_low=np.quantile(near["capped"], 0.05), capped_designs=len(capped)))
-    return pd.DataFrame(rows)
-
-
-def _pair(cube, random, pairs=200_000):
-    """Mean distance of two different random points of a set."""
-    i = random.integers(len(cube), size=pairs)
-    j = (i + random.integers(1, len(cube), size=pairs)) % len(cube)
-    return np.linalg.norm(cube[i] - cube[j], axis=1).mean()
-
-
-def _nearest(distances, chances, random, trials=2000):
-    """Distance of the nearest of `chances` random picks, in many trials."""
-    return distances[random.integers(len(distances), size=(trials, chances))].min(1)
-
-
-def _lighter_than(target, count, seed):
-    """Uniform random designs below a rover's mass ceiling.
-
-    Total mass rises with every variable. Each one is therefore bounded by what it may reach with all others
-    at their least; what is drawn in that smaller box and is light enough is uniform in the whole light part
-    of the space.
-    """
-    low = {name: v.low for name, v in DESIGN_SPACE.items()}
-    bounds = {}
-    for name in ("wheel_radius_m", "wheel_width_m", "chassis_mass_kg", "solar_area_m2", "battery_capacity_wh",
-                 "avionics_power_w", "peak_wheel_torque_nm"):
-        values = np.linspace(DESIGN_SPACE[name].low, DESIGN_SPACE[name].high, 1001)
-        mass = mass_of(Design(**low | {name: values}), target.scenario, Model()).total_kg
-        light = np.flatnonzero(mass <= target.ceiling_kg)
-        highest = values[min(light[-1] + 1, len(values) - 1)] if light.size else low[name]
-        bounds[name] = (DESIGN_SPACE[name].low, float(highest))
-    six = mass_of(Design(**low | {"wheel_count": 6}), target.scenario, Model()).total_kg <= target.ceiling_kg
-    bounds["wheel_count"] = (4, 6 if six else 4)
-    found, total = [], 0
-    for block in range(50):                              # few designs are as light as the lightest rovers
-        designs = random_designs(100_000, (seed, block), bounds)
-        found.append(designs[mass_of(designs, target.scenario, Model()).total_kg <= target.ceiling_kg])
-        total += len(found[-1])
-        if total >= count:
-            break
-    joined = {name: np.concatenate([getattr(designs, name) for designs in found]) for name in DESIGN_SPACE}
-    return Design(**joined)[:count]

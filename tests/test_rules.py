@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import rdk
-from rdk import catalog, contact, rules, tradespace, validation
+from rdk import catalog, contact, rediscovery, rules, tradespace, validation
 from rdk.validation import searches
 
 MARE, HIGHLAND = rdk.scenario("equatorial_mare_traverse"), rdk.scenario("highland_slope_capability")
@@ -238,7 +238,7 @@ def test_coverage_refuses_an_unknown_experiment():
 
 @pytest.fixture(scope="module")
 def found():
-    return rules.rediscovery(["Rashid-1", "Pragyan"], population=12, generations=(3, 6), seeds=(0, 1))
+    return rediscovery.rediscover(["Rashid-1", "Pragyan"], population=12, generations=(3, 6), seeds=(0, 1))
 
 
 def test_distance_by_hand(found):
@@ -265,23 +265,23 @@ def test_ceiling_holds_and_the_payload_is_the_rovers_own(found):
 
 def test_search_is_the_same_in_parallel_and_in_one_go(found):
     with ThreadPoolExecutor(2) as executor:
-        again = rules.rediscovery(["Rashid-1", "Pragyan"], population=12, generations=(6,), seeds=(0, 1),
+        again = rediscovery.rediscover(["Rashid-1", "Pragyan"], population=12, generations=(6,), seeds=(0, 1),
                                   executor=executor)
     assert list(again.distance) == list(found.query("generations == 6").distance)
 
 
 def test_a_front_without_designs_is_a_row_without_a_distance():
-    row = rules.rediscovery(["Tenacious"], population=4, generations=(1,), seeds=(0,)).iloc[0]
+    row = rediscovery.rediscover(["Tenacious"], population=4, generations=(1,), seeds=(0,)).iloc[0]
     assert row.front_designs == 0 and np.isnan(row.distance) and not row.dominated
 
 
 def test_rediscovery_refuses_an_unknown_rover():
     with pytest.raises(ValueError, match="no rover 'Spirit' in the check; choose from Tenacious"):
-        rules.rediscovery(["Spirit"])
+        rediscovery.rediscover(["Spirit"])
 
 
 def test_baselines(found):
-    table = rules.rediscovery_baselines(found.query("generations == 6"), count=1000).set_index("rover")
+    table = rediscovery.baselines(found.query("generations == 6"), count=1000).set_index("rover")
     # the mean of 200,000 pairs of 1,000 points: the points' own scatter is a percent
     assert_allclose(table.random_pair, CUBE_PAIR, rtol=0.02)
     assert table.feasible_fraction.between(0.7, 0.95).all()
@@ -289,20 +289,20 @@ def test_baselines(found):
     assert (table.nearest_capped_low <= table.nearest_capped).all()
     # more chances, nearer
     more = found.query("generations == 6").assign(front_designs=500)
-    assert (rules.rediscovery_baselines(more, count=1000).nearest_feasible.to_numpy()
+    assert (rediscovery.baselines(more, count=1000).nearest_feasible.to_numpy()
             < table.nearest_feasible.to_numpy()).all()
 
 
 @pytest.mark.parametrize("name", ["Tenacious", "Rashid-1", "Yutu-2"])
 def test_light_designs_are_uniform_in_the_light_part_of_the_space(name):
     """Against plain rejection: drawn from the whole box, kept where light enough, the means are the same."""
-    target = rules._Target.of(name)
-    found = rules._lighter_than(target, 500, seed=1)
+    target = rediscovery._Target.of(name)
+    found = rediscovery._lighter_than(target, 500, seed=1)
     assert (rules.mass_of(found, target.scenario, rdk.Model()).total_kg <= target.ceiling_kg).all()
     designs = rdk.random_designs(400_000, seed=2)
     plain = designs[rules.mass_of(designs, target.scenario, rdk.Model()).total_kg <= target.ceiling_kg]
     if len(plain) > 300:
-        one, other = rules.unit_cube(found), rules.unit_cube(plain)
+        one, other = rediscovery.unit_cube(found), rediscovery.unit_cube(plain)
         error = np.sqrt(one.var(0) / len(one) + other.var(0) / len(other))
         assert (abs(one.mean(0) - other.mean(0)) < 4 * error).all()        # four standard errors
     else:
@@ -315,7 +315,7 @@ def test_light_designs_are_uniform_in_the_light_part_of_the_space(name):
 def small_ledger():
     """The stochastic and cost rows with every search cut to a few generations of a small population."""
     patch = pytest.MonkeyPatch()
-    study, pareto_front, rediscovery = tradespace.study, tradespace.pareto_front, rules.rediscovery
+    study, pareto_front, rediscover = tradespace.study, tradespace.pareto_front, rediscovery.rediscover
     sizes = []
 
     def small_study(*arguments, generations=60, **options):
@@ -325,10 +325,10 @@ def small_ledger():
     patch.setattr(searches, "study", small_study)
     patch.setattr(searches, "pareto_front", lambda scenario, **options: pareto_front(
         scenario, population=12, **options | {"generations": 5}))
-    patch.setattr(rules, "rediscovery", lambda **options: rediscovery(
+    patch.setattr(rediscovery, "rediscover", lambda **options: rediscover(
         population=12, **options | {"seeds": options["seeds"][:2]}))
-    baselines = rules.rediscovery_baselines
-    patch.setattr(rules, "rediscovery_baselines", lambda found, **options: baselines(
+    baselines = rediscovery.baselines
+    patch.setattr(rediscovery, "baselines", lambda found, **options: baselines(
         found, **options | {"count": 500}))
     patch.setattr(searches.rules, "OBSTACLE_HEIGHTS_M", (0.0, 0.08, 0.12))
     try:

@@ -9,7 +9,7 @@ import numpy as np
 from .. import catalog, validation
 from ..design import Design
 from ..mission import evaluate
-from ..rules import unit_cube
+from ..rediscovery import unit_cube
 from ..sampling import intervals
 from ..tradespace import pareto_front
 from .judging import exercise

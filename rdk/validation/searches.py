@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .. import catalog, contact, rules
+from .. import catalog, contact, rediscovery, rules
 from ..mission import evaluate
 from ..sampling import random_designs
 from ..tradespace import pareto_front, study
@@ -89,11 +89,11 @@ class Searches:
 
     @cached_property
     def rediscovery(self):
-        return rules.rediscovery(seeds=[seed + self.seed_offset for seed in range(5)], executor=self.executor)
+        return rediscovery.rediscover(seeds=[seed + self.seed_offset for seed in range(5)], executor=self.executor)
 
     @cached_property
     def baselines(self):
-        return rules.rediscovery_baselines(self.rediscovery, count=8000, seed=self.seed_offset)
+        return rediscovery.baselines(self.rediscovery, count=8000, seed=self.seed_offset)
 
 
 # ---- fronts ------------------------------------------------------------------------------------------------
