@@ -12,9 +12,8 @@ from .mission import Performance, evaluate
 from .terramechanics import Soil, Wheel
 
 _LAZY = {"random_designs": "tradespace", "sweep": "tradespace", "pareto_front": "tradespace",
-         "intervals": "tradespace", "attribution": "tradespace", "study": "tradespace",
-         "check": "course",
-         "course": None, "report": None, "tradespace": None, "validation": None, "plots": None, "explorer": None}
+         "intervals": "tradespace", "attribution": "tradespace", "fronts": "tradespace",
+         "report": None, "tradespace": None, "validation": None, "figures": None, "explorer": None}
 
 __all__ = ["DESIGN_SPACE", "Design", "Model", "Performance", "Scenario", "Soil", "Wheel", "evaluate", "mass", "power",
            "rover", "rover_names", "scenario", "scenario_names", "soil", "soil_names", "terramechanics", "thermal",

@@ -9,7 +9,7 @@ import dataclasses
 import functools
 from pathlib import Path
 
-from .design import Design, Scenario, Study
+from .design import Design, Scenario, Problem
 from .terramechanics import Soil
 
 DATA = Path(__file__).resolve().parent.parent / "data"
@@ -152,20 +152,20 @@ def scenario(name):
     if row["soil"] not in soil_names():
         raise ValueError(f"scenarios.csv is damaged: row of {name!r}: no soil {row['soil']!r} in soils.csv")
     flat = _read(Scenario, row, _SCENARIO, "scenarios.csv", name, name=name, soil=soil(row["soil"]),
-                 study=study(name))
+                 problem=problem(name))
     return dataclasses.replace(flat, panel_tilt_deg=min(80.0, abs(flat.latitude_deg)),
                                panel_azimuth_deg=0.0 if flat.latitude_deg < 0 else 180.0)
 
 
-def study(name):
+def problem(name):
     """How the paper poses a scenario to the optimiser, from `data/studies.csv`; the defaults where it does not."""
     for row in _rows("studies.csv", DATA):
         if row["scenario"] == name:
             break
     else:
-        return Study()
+        return Problem()
     try:
-        return Study(
+        return Problem(
             objectives=dict(item.split(":") for item in row["objectives"].split(";")),
             constraints=tuple((field, sign, float(limit)) for field, sign, limit in
                               (item.split(" ") for item in row["constraints"].split(";"))),

@@ -87,7 +87,7 @@ class Design(Record):
 
 
 @dataclass(frozen=True)
-class Study:
+class Problem:
     """How a scenario is posed to the optimiser; the defaults are the paper's for its traverse missions.
 
     Parameters
@@ -135,7 +135,7 @@ class Scenario(Record):
         From the horizontal, 0 to 180.
     panel_azimuth_deg : float or ndarray
         Direction that the panel faces, clockwise from north, -360 to 360.
-    study : Study
+    problem : Problem
         How `pareto_front` poses the mission when it is told nothing else.
 
     Raises
@@ -155,7 +155,7 @@ class Scenario(Record):
     required_obstacle_height_m: float = number(0, default=0.0)
     panel_tilt_deg: float = number(0, 180, default=0.0)
     panel_azimuth_deg: float = number(-360, 360, default=180.0)
-    study: Study = field(default_factory=Study, repr=False)
+    problem: Problem = field(default_factory=Problem, repr=False)
 
     def __post_init__(self):
         if not isinstance(self.soil, Soil):

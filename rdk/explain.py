@@ -143,7 +143,7 @@ def as_python(design, scenario, model, *calls, baseline=None):
         Source text that runs as it stands.
     """
     changed = {f.name: getattr(model, f.name) for f in dataclasses.fields(Model) if getattr(model, f.name) != f.default}
-    mission = {f.name: getattr(scenario, f.name) for f in dataclasses.fields(Scenario) if f.name not in ("soil", "study")}
+    mission = {f.name: getattr(scenario, f.name) for f in dataclasses.fields(Scenario) if f.name not in ("soil", "problem")}
     soil = {f.name: getattr(scenario.soil, f.name) for f in dataclasses.fields(Soil)}
     rovers = {"design": design} | ({} if baseline is None else {"baseline": baseline})
     parts = [_built(name, "Design", {n: getattr(rover, n) for n in DESIGN_SPACE}) for name, rover in rovers.items()]

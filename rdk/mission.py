@@ -21,7 +21,7 @@ from .mass import MassBreakdown, mass_breakdown
 MEAN_SAMPLES = 200                                       # samples of the mission-average solar power
 MARCH_ELEMENTS = 2**17                                   # steps x lanes marched at once: 1 MB arrays stay in cache
 
-_MASS_COEFFICIENTS = (
+MASS_COEFFICIENTS = (
     "wheel_areal_density_kg_m2", "grouser_thickness_m", "grouser_density_kg_m3", "motor_base_mass_kg",
     "motor_mass_per_torque_kg_nm", "solar_areal_density_kg_m2", "battery_specific_energy_wh_kg",
     "avionics_base_mass_kg", "avionics_mass_per_power_kg_w", "linkage_base_mass_kg", "linkage_chassis_fraction",
@@ -176,7 +176,7 @@ def evaluate(design, scenario, model=Model()):
     shape = together(design=design.shape, scenario=scenario.shape, model=model.shape)
     warn_outside(design)
     with np.errstate(all="ignore"):                      # a lane without a solution is infeasible, not a warning
-        mass = _mass(design, scenario, model)
+        mass = mass_of(design, scenario, model)
         weight = mass.total_kg * model.gravity_m_s2 / design.wheel_count         # load and pull shared equally
         balance, capability = terramechanics.climb(
             design.wheel, scenario.soil, weight, scenario.slope_deg, slip_min=model.slip_min, slip_max=model.slip_max,
@@ -218,12 +218,12 @@ def _shaped(value, shape):
     return value if np.shape(value) == shape else np.broadcast_to(value, shape)
 
 
-def _mass(design, scenario, model):
+def mass_of(design, scenario, model):
     """Mass breakdown of a design with the scenario's payload; raises nothing."""
     sizes = design.numbers()
     del sizes["wheelbase_m"]
     return mass_breakdown(**sizes, payload_mass_kg=scenario.payload_mass_kg,
-                          **{name: getattr(model, name) for name in _MASS_COEFFICIENTS})
+                          **{name: getattr(model, name) for name in MASS_COEFFICIENTS})
 
 
 def cruise_speed(average_solar_power_w, base_load_w, wheel_count, wheel_torque_nm, slip, wheel_radius_m, duty_cycle,

@@ -9,8 +9,7 @@ import pandas as pd
 from . import catalog
 from ._fields import check
 from .design import DESIGN_SPACE, Design, Model
-from .mission import _mass as mass_of
-from .mission import evaluate
+from .mission import evaluate, mass_of
 from .rules import beaten, fronts_at, minimised, place
 from .sampling import random_designs
 
@@ -46,7 +45,7 @@ class _Target:
 
     @property
     def constraints(self):
-        return self.scenario.study.constraints + (("total_mass_kg", "<=", self.ceiling_kg),)
+        return self.scenario.problem.constraints + (("total_mass_kg", "<=", self.ceiling_kg),)
 
     def distances(self, designs):
         return np.linalg.norm(unit_cube(designs) - unit_cube(self.design), axis=1)
@@ -95,8 +94,8 @@ def _found(target, generation, fronts):
     if fronts:
         nearest = [target.distances(front.designs).min() for front in fronts]
         best = fronts[int(np.argmin(nearest))].designs
-        own = minimised(target.performance, fronts[0].study.objectives)
-        theirs = np.concatenate([minimised(front.performance, front.study.objectives) for front in fronts])
+        own = minimised(target.performance, fronts[0].problem.objectives)
+        theirs = np.concatenate([minimised(front.performance, front.problem.objectives) for front in fronts])
         row |= dict(distance=min(nearest), distance_worst_seed=max(nearest),
                     dominated=beaten(own, theirs).item(),
                     nearest=best[int(np.argmin(target.distances(best)))])

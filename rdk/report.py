@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import explain, keep, pictures
+from . import explain, keep
+from .explorer import pictures
 from .design import DESIGN_SPACE, Model
 from .mission import evaluate
 from .sampling import attribution, intervals, uncertain_inputs
@@ -228,7 +229,7 @@ def _on_front(front, result):
         values = np.asarray(getattr(front.performance, name), float)
         return np.ptp(values) / max(np.abs(values).max(), 1e-12)
 
-    up = max((name for name in front.study.objectives if name != "total_mass_kg"), key=spread,
+    up = max((name for name in front.problem.objectives if name != "total_mass_kg"), key=spread,
              default="range_km")
     axes = ("total_mass_kg", up)
     return _picture(pictures.front, *(getattr(front.performance, name) for name in axes), axes, None,

@@ -16,12 +16,11 @@ import pandas as pd
 from . import catalog
 from ._fields import check
 from .design import DESIGN_SPACE, Model
-from .mission import _mass as mass_of
-from .mission import evaluate
+from .mission import evaluate, mass_of
 from .sampling import METRICS, decode, drawn, perturbed, replaced
 from .terramechanics import wheel_forces
 from .tradespace import search
-from .validation.wheels import single_wheel_conditions
+from .validation import single_wheel_conditions
 
 SHEAR_SCALES = (0.70, 0.85, 1.00, 1.15, 1.30)
 """Factors on the shear stress in the paper's robustness study."""
@@ -55,7 +54,7 @@ def front_statistics(fronts):
     for front in fronts:
         d, p = front.designs, front.performance
         row = dict(
-            scenario=front.scenario.name, seed=front.study.seed, shear_scale=front.model.shear_scale,
+            scenario=front.scenario.name, seed=front.problem.seed, shear_scale=front.model.shear_scale,
             obstacle_height_m=front.scenario.required_obstacle_height_m,
             generations=len(front.objective_history), designs=len(front))
         if len(front):
@@ -214,8 +213,8 @@ def dominated(front, others):
     -------
     ndarray of bool, shape (n,)
     """
-    mine = minimised(front.performance, front.study.objectives)
-    theirs = np.concatenate([minimised(other.performance, front.study.objectives) for other in others])
+    mine = minimised(front.performance, front.problem.objectives)
+    theirs = np.concatenate([minimised(other.performance, front.problem.objectives) for other in others])
     return beaten(mine, theirs)
 
 

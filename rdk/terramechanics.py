@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import contact
+from . import _contact
 from ._fields import Record, check, number, together
 
 SLIP_MIN, SLIP_MAX = -0.9, 0.95                          # where the slip balance is sought
@@ -166,9 +166,9 @@ def wheel_forces(wheel, soil, vertical_load_n, slip, *, transition_c1=0.4, trans
 
     def solve(lanes):
         patch, (load, slip) = lanes[:9], lanes[9:]
-        return contact.carried(patch, slip, load)
+        return _contact.carried(patch, slip, load)
 
-    return WheelForces(*contact.in_blocks(solve, lanes, shape))
+    return WheelForces(*_contact.in_blocks(solve, lanes, shape))
 
 
 def slip_balance(wheel, soil, vertical_load_n, required_pull_n, *, slip_min=SLIP_MIN, slip_max=SLIP_MAX,
@@ -211,10 +211,10 @@ def slip_balance(wheel, soil, vertical_load_n, required_pull_n, *, slip_min=SLIP
 
     def solve(lanes):
         patch, (load, pull, low, high) = lanes[:9], lanes[9:]
-        theta_high, _, pull_high = contact.entry_angle(patch, high, load, np.zeros_like(load))
-        return contact.slip_balance(patch, load, pull, low, high, theta_high, pull_high, np.full_like(load, 0.3))
+        theta_high, _, pull_high = _contact.entry_angle(patch, high, load, np.zeros_like(load))
+        return _contact.slip_balance(patch, load, pull, low, high, theta_high, pull_high, np.full_like(load, 0.3))
 
-    return SlipBalance(*contact.in_blocks(solve, lanes, shape))
+    return SlipBalance(*_contact.in_blocks(solve, lanes, shape))
 
 
 def slope_capability(wheel, soil, weight_n, *, capability_slip=CAPABILITY_SLIP,
@@ -255,10 +255,10 @@ def slope_capability(wheel, soil, weight_n, *, capability_slip=CAPABILITY_SLIP,
 
     def solve(lanes):
         patch, (weight, slip, limit) = lanes[:9], lanes[9:]
-        at_slip = contact.entry_angle(patch, slip, weight, np.ones_like(weight))
-        return (contact.slope(patch, slip, *at_slip, limit),)
+        at_slip = _contact.entry_angle(patch, slip, weight, np.ones_like(weight))
+        return (_contact.slope(patch, slip, *at_slip, limit),)
 
-    return contact.in_blocks(solve, lanes, shape)[0]
+    return _contact.in_blocks(solve, lanes, shape)[0]
 
 
 def climb(wheel, soil, weight_n, slope_deg, *, slip_min=SLIP_MIN, slip_max=SLIP_MAX, capability_slip=CAPABILITY_SLIP,
@@ -303,16 +303,16 @@ def climb(wheel, soil, weight_n, slope_deg, *, slip_min=SLIP_MIN, slip_max=SLIP_
         patch, (weight, slope, low, high, slip, limit) = lanes[:9], lanes[9:]
         load, count = weight * np.cos(slope), weight.size                # eq. required-dp
         # both entry angles in one batch: a batch twice as long costs less than two batches
-        ends = contact.entry_angle(np.tile(patch, 2), np.concatenate([high, slip]), np.concatenate([load, weight]),
+        ends = _contact.entry_angle(np.tile(patch, 2), np.concatenate([high, slip]), np.concatenate([load, weight]),
                                    np.repeat([0.0, 1.0], count))
         (theta_high, _, pull_high), at_slip = ends[:, :count], ends[:, count:]
         # slip grows almost alike in all wheels and soils with the demand's share of the pull at the capability slip
         demand = np.tan(slope) * at_slip[1] / at_slip[2]
         guess = np.nan_to_num(slip * np.clip(demand, 0.1, 1.5) ** 1.25, nan=0.5)
-        return (*contact.slip_balance(patch, load, weight * np.sin(slope), low, high, theta_high, pull_high, guess),
-                contact.slope(patch, slip, *at_slip, limit))
+        return (*_contact.slip_balance(patch, load, weight * np.sin(slope), low, high, theta_high, pull_high, guess),
+                _contact.slope(patch, slip, *at_slip, limit))
 
-    *balance, capability = contact.in_blocks(solve, lanes, shape)
+    *balance, capability = _contact.in_blocks(solve, lanes, shape)
     return SlipBalance(*balance), capability
 
 
@@ -359,7 +359,7 @@ def contact_stress(wheel, soil, entry_angle_rad, slip, angle_rad, *, transition_
         tau = (c + sigma * tan_phi) * -np.expm1(-abs(j) / K) * np.sign(j)           # eq. tau, gamma_g inside c, tan_phi
         return sigma * inside, tau * inside, j * inside, theta_m
 
-    return ContactStress(*contact.in_blocks(stresses, lanes, shape))
+    return ContactStress(*_contact.in_blocks(stresses, lanes, shape))
 
 
 def grouser_lift(wheel, grouser_lift_cap=0.6):

@@ -20,12 +20,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ._fields import check
-from .design import DESIGN_SPACE, Design, Model, Scenario, Study
+from .design import DESIGN_SPACE, Design, Model, Scenario, Problem
 from .mission import Performance, evaluate
 from .sampling import METRICS, attribution, decode, encode, intervals, random_designs, sweep
 
-__all__ = ["Front", "Progress", "attribution", "decode", "encode", "hypervolume", "intervals", "pareto_front",
-           "random_designs", "study", "sweep"]
+__all__ = ["Front", "Progress", "attribution", "decode", "encode", "fronts", "hypervolume", "intervals", "pareto_front",
+           "random_designs", "sweep"]
 
 FAILED = 1e9                                             # objective and violation of a lane without a solution
 RANKED_DECIMALS = 8                                      # objectives are compared no finer: see `_nsga2`
@@ -43,9 +43,9 @@ class Front:
     performance : Performance
         Both with shape (n,); n is 0 where no design met the constraints, and `message` says so.
     scenario : Scenario
-        As searched: with the study's traverse limit.
+        As searched: with the problem's traverse limit.
     model : Model
-    study : Study
+    problem : Problem
         Objectives, constraints and seed of the search.
     objective_history : tuple of ndarray
         The non-dominated feasible objectives after each generation, all to be minimised.
@@ -56,7 +56,7 @@ class Front:
     performance: Performance
     scenario: Scenario
     model: Model
-    study: Study
+    problem: Problem
     objective_history: tuple = dataclasses.field(repr=False, default=())
     message: str = ""
 
@@ -66,7 +66,7 @@ class Front:
     @cached_property
     def history(self):
         """Normalised hypervolume after each generation."""
-        return np.array([hypervolume(F, self.study.objectives, self.scenario) for F in self.objective_history])
+        return np.array([hypervolume(F, self.problem.objectives, self.scenario) for F in self.objective_history])
 
     def to_frame(self):
         """A pandas DataFrame: one row a design, its variables first, then its performance."""
@@ -112,15 +112,15 @@ def hypervolume(minimised, objectives, scenario):
 
 
 def posed(scenario, objectives=None, constraints=None, seed=None):
-    """The scenario and the Study that a search uses: the scenario's own study, with what the caller changes."""
-    study = scenario.study
+    """The scenario and the Problem that a search uses: the scenario's own problem, with what the caller changes."""
+    problem = scenario.problem
     if objectives is not None and not isinstance(objectives, dict):
         raise ValueError(f"objectives must be a dictionary like {{'range_km': 'max'}}; got {objectives!r}")
     if constraints is not None and not (isinstance(constraints, (list, tuple))
                                         and all(isinstance(c, (list, tuple)) for c in constraints)):
         raise ValueError(f"constraints must be a list of (field, '>=' or '<=', limit); got {constraints!r}")
-    objectives = study.objectives if objectives is None else dict(objectives)
-    constraints = study.constraints if constraints is None else tuple(tuple(c) for c in constraints)
+    objectives = problem.objectives if objectives is None else dict(objectives)
+    constraints = problem.constraints if constraints is None else tuple(tuple(c) for c in constraints)
     if not objectives:
         raise ValueError("objectives must name at least one Performance field; got none")
     for name, direction in objectives.items():
@@ -145,9 +145,9 @@ def posed(scenario, objectives=None, constraints=None, seed=None):
         raise ValueError(f"scenario must be a single mission for a search; got arrays of shape {scenario.shape}")
     if scenario.required_obstacle_height_m > 0:
         constraints += (("obstacle_capability_m", ">=", scenario.required_obstacle_height_m),)
-    if study.traverse_limit_km is not None:
-        scenario = dataclasses.replace(scenario, traverse_limit_km=study.traverse_limit_km)
-    return scenario, Study(objectives, constraints, study.traverse_limit_km, study.seed if seed is None else seed)
+    if problem.traverse_limit_km is not None:
+        scenario = dataclasses.replace(scenario, traverse_limit_km=problem.traverse_limit_km)
+    return scenario, Problem(objectives, constraints, problem.traverse_limit_km, problem.seed if seed is None else seed)
 
 
 def pareto_front(scenario, population=50, generations=60, seed=None, objectives=None, constraints=None, model=Model(),
@@ -161,12 +161,12 @@ def pareto_front(scenario, population=50, generations=60, seed=None, objectives=
     Parameters
     ----------
     scenario : Scenario
-        A single mission. Its `study` gives objectives, constraints, seed and traverse limit unless told otherwise. A
+        A single mission. Its `problem` gives objectives, constraints, seed and traverse limit unless told otherwise. A
         required obstacle height above 0 becomes a constraint.
     population, generations : int
         Designs in each generation (4 or more), and how many generations (1 or more).
     seed : int, optional
-        Same seed, same bits. Default: the study's; without one, each run differs.
+        Same seed, same bits. Default: the problem's; without one, each run differs.
     objectives : dict of str to str, optional
         Performance fields with "max" or "min".
     constraints : sequence of (str, str, float), optional
@@ -215,21 +215,21 @@ def search(scenario, population=50, generations=60, seed=None, objectives=None, 
         raise TypeError(f"model must be a Model; got {type(model).__name__}")
     if model.shape:
         raise ValueError(f"model must hold single numbers for a search; got arrays of shape {model.shape}")
-    scenario, study = posed(scenario, objectives, constraints, seed)
+    scenario, problem = posed(scenario, objectives, constraints, seed)
     first = _first_generation(start, population, bounds)
-    algorithm, problem = _nsga2(scenario, study, model, population, generations, first, bounds)
+    algorithm, mission = _nsga2(scenario, problem, model, population, generations, first, bounds)
     history, stopped = [], False
 
     def so_far(message=""):
         best = [i for i in algorithm.opt if np.all(i.feas)] if algorithm.opt is not None else []
         # of designs alike in every objective keep one: the last bits would let it dominate its twins
-        _, first = np.unique(np.array([i.F for i in best]).reshape(-1, len(study.objectives)), axis=0, return_index=True)
+        _, first = np.unique(np.array([i.F for i in best]).reshape(-1, len(problem.objectives)), axis=0, return_index=True)
         genes = np.array([best[i].X for i in np.sort(first)]).reshape(-1, len(DESIGN_SPACE))
         designs = decode(genes, bounds)
         performance = evaluate(designs, scenario, model)
         designs = designs[np.lexsort((performance.range_km, performance.total_mass_kg))]
         # evaluated in their final order: the last bits can depend on a lane's place in the batch
-        return Front(designs, evaluate(designs, scenario, model), scenario, model, study, tuple(history), message)
+        return Front(designs, evaluate(designs, scenario, model), scenario, model, problem, tuple(history), message)
 
     while algorithm.has_next() and not stopped:
         algorithm.next()
@@ -239,9 +239,9 @@ def search(scenario, population=50, generations=60, seed=None, objectives=None, 
             stopped = bool(on_generation(Progress(len(history), generations, so_far)))
     front = so_far(f"stopped after generation {len(history)} of {generations}" if stopped else "")
     if not len(front):
-        words = ", ".join(f"{name} {sign} {limit:g}" for name, sign, limit in study.constraints)
-        message = (f"no design of {len(history)} generations met the constraints {words}; {problem.nearest_miss}"
-                   if math.isfinite(problem.least) else
+        words = ", ".join(f"{name} {sign} {limit:g}" for name, sign, limit in problem.constraints)
+        message = (f"no design of {len(history)} generations met the constraints {words}; {mission.nearest_miss}"
+                   if math.isfinite(mission.least) else
                    f"no design of {len(history)} generations has a solution: the wheels are buried")
         front = dataclasses.replace(front, message=message)
     return front
@@ -257,8 +257,8 @@ def _first_generation(start, population, bounds):
         raise TypeError(f"start must be a Front or a Design; got {type(start).__name__}")
 
     class WarmStart(FloatRandomSampling):
-        def _do(self, problem, n_samples, *args, **kwargs):
-            genes = super()._do(problem, n_samples, *args, **kwargs)
+        def _do(self, mission, n_samples, *args, **kwargs):
+            genes = super()._do(mission, n_samples, *args, **kwargs)
             known = encode(designs, bounds)
             if len(known) > n_samples:
                 known = known[np.linspace(0, len(known) - 1, n_samples).round().astype(int)]
@@ -268,35 +268,35 @@ def _first_generation(start, population, bounds):
     return WarmStart()
 
 
-def _nsga2(scenario, study, model, population, generations, first, bounds):
-    """pymoo's algorithm, ready for ask and tell, and the problem that it solves."""
+def _nsga2(scenario, problem, model, population, generations, first, bounds):
+    """pymoo's algorithm, ready for ask and tell, and the mission that it solves."""
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.config import Config
-    from pymoo.core.problem import Problem
+    from pymoo.core.problem import Problem as Pymoo
     from pymoo.operators.crossover.sbx import SBX
     from pymoo.operators.mutation.pm import PM
     from pymoo.operators.survival.rank_and_crowding.metrics import get_crowding_function
     from pymoo.core.survival import Survival
     from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
     Config.warnings["not_compiled"] = False
-    signs = np.array([-1.0 if d == "max" else 1.0 for d in study.objectives.values()])
+    signs = np.array([-1.0 if d == "max" else 1.0 for d in problem.objectives.values()])
 
-    class Mission(Problem):
+    class Mission(Pymoo):
         nearest_miss, least = "", math.inf
 
         def __init__(self):
             # one constraint more: that the design has a solution at all
-            super().__init__(n_var=len(DESIGN_SPACE), n_obj=len(signs), n_ieq_constr=len(study.constraints) + 1, xl=0.0,
+            super().__init__(n_var=len(DESIGN_SPACE), n_obj=len(signs), n_ieq_constr=len(problem.constraints) + 1, xl=0.0,
                              xu=1.0)
 
         def _evaluate(self, x, out, *args, **kwargs):
             result = evaluate(decode(x, bounds), scenario, model)
             # designs that differ in a variable which no objective feels tie in theory; the last bits, which differ
             # from one processor to the next, must not rank them
-            F = np.round(np.stack([getattr(result, name) for name in study.objectives], axis=1) * signs,
+            F = np.round(np.stack([getattr(result, name) for name in problem.objectives], axis=1) * signs,
                          RANKED_DECIMALS)
             G = np.stack([(getattr(result, name) - limit) * (-1 if sign == ">=" else 1)
-                          for name, sign, limit in study.constraints] + [np.zeros(len(x))], axis=1)
+                          for name, sign, limit in problem.constraints] + [np.zeros(len(x))], axis=1)
             failed = result.buried | ~np.isfinite(F).all(1) | ~np.isfinite(G).all(1)
             F[failed], G[failed] = FAILED, FAILED
             out["F"], out["G"] = F, G
@@ -304,13 +304,13 @@ def _nsga2(scenario, study, model, population, generations, first, bounds):
             if len(x) and missed.min() < self.least:
                 self.least = missed.min()
                 self.nearest_miss = "the nearest missed them by " + ", ".join(
-                    f"{value:.3g} in {name}" for value, (name, *_) in zip(G[missed.argmin()], study.constraints)
+                    f"{value:.3g} in {name}" for value, (name, *_) in zip(G[missed.argmin()], problem.constraints)
                     if value > 0)
 
     class StableSurvival(Survival):
         """Rank and crowding, as pymoo's. Its sorts leave ties in an order that differs from processor to processor."""
 
-        def _do(self, problem, pop, *args, n_survive=None, **kwargs):
+        def _do(self, mission, pop, *args, n_survive=None, **kwargs):
             F, violation, kept = pop.get("F"), pop.get("CV")[:, 0], []
             feasible, infeasible = np.flatnonzero(violation <= 0), np.flatnonzero(violation > 0)
             ranks = NonDominatedSorting().do(F[feasible], n_stop_if_ranked=n_survive) if feasible.size else []
@@ -328,9 +328,9 @@ def _nsga2(scenario, study, model, population, generations, first, bounds):
     algorithm = NSGA2(pop_size=population, sampling=first, crossover=SBX(prob=0.9, eta=15),
                       mutation=PM(prob=0.9, eta=20), survival=StableSurvival(filter_infeasible=False),
                       eliminate_duplicates=True)
-    problem = Mission()
-    algorithm.setup(problem, termination=("n_gen", generations), seed=study.seed, verbose=False)
-    return algorithm, problem
+    mission = Mission()
+    algorithm.setup(mission, termination=("n_gen", generations), seed=problem.seed, verbose=False)
+    return algorithm, mission
 
 
 # ---- many fronts ----------------------------------------------------------------------------------------------
@@ -368,7 +368,7 @@ class Case:
                 f"_{self.population}x{self.generations}_{self.key}")
 
 
-def study(scenarios, seeds=None, shear_scales=(1.0,), obstacle_heights_m=(0.0,), population=50, generations=60,
+def fronts(scenarios, seeds=None, shear_scales=(1.0,), obstacle_heights_m=(0.0,), population=50, generations=60,
           model=Model(), executor=None, folder=None, on_front=None):
     """Fronts for every combination of scenario, seed, shear scale and obstacle height.
 
@@ -412,7 +412,7 @@ def study(scenarios, seeds=None, shear_scales=(1.0,), obstacle_heights_m=(0.0,),
     seeds = [s if s is None else int(check("seeds", s, 0, whole=True, scalar=True)) for s in lists["seeds"]]
     scales = [check("shear_scales", s, above=0, scalar=True) for s in lists["shear_scales"]]
     heights = [check("obstacle_heights_m", h, 0, scalar=True) for h in lists["obstacle_heights_m"]]
-    cases = [Case(scenario, (scenario.study.seed or 0) if seed is None else seed, scale, height, population,
+    cases = [Case(scenario, (scenario.problem.seed or 0) if seed is None else seed, scale, height, population,
                   generations, model)
              for scenario in lists["scenarios"] for seed in seeds for scale in scales for height in heights]
     folder = Path(folder) if folder is not None else None
@@ -477,13 +477,13 @@ def _load(folder, case):
     try:
         kept = json.loads((folder / f"{case.label}.json").read_text(encoding="utf-8"))
         designs = Design(**{name: np.array(kept["designs"][name], float) for name in DESIGN_SPACE})
-        history = tuple(np.array(F, float).reshape(len(F), len(case.scenario.study.objectives))
+        history = tuple(np.array(F, float).reshape(len(F), len(case.scenario.problem.objectives))
                         for F in kept["objective_history"])
         message = str(kept["message"])
     except (ValueError, KeyError, TypeError) as error:
         warnings.warn(f"{case.label}.json in {folder} is damaged and computed anew: {error}", UserWarning, stacklevel=3)
         return None
     model = dataclasses.replace(case.model, shear_scale=case.shear_scale)
-    scenario, study = posed(dataclasses.replace(case.scenario, required_obstacle_height_m=case.obstacle_height_m),
+    scenario, problem = posed(dataclasses.replace(case.scenario, required_obstacle_height_m=case.obstacle_height_m),
                             seed=case.seed)
-    return Front(designs, evaluate(designs, scenario, model), scenario, model, study, history, message)
+    return Front(designs, evaluate(designs, scenario, model), scenario, model, problem, history, message)

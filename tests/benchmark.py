@@ -22,7 +22,8 @@ import numpy as np
 import scalar_transcription as scalar
 
 import rdk
-from rdk import contact, tradespace
+from rdk import _contact as contact
+from rdk import tradespace
 
 SIZES = {1: 40, 50: 30, 2_000: 6, 100_000: 1}            # designs in a population: repetitions
 SCENARIOS = rdk.scenario_names("canonical")
@@ -169,7 +170,7 @@ def trade_space():
         tradespace.evaluate = kept
     print(f"pymoo, with answers ready: {free / 1e3:.2f} s")
     scenarios = [rdk.scenario(name) for name in SCENARIOS]
-    for label, run in (("study of the four scenarios", lambda: rdk.study(scenarios)),
+    for label, run in (("study of the four scenarios", lambda: rdk.fronts(scenarios)),
                        ("intervals, 500 draws", lambda: rdk.intervals(rashid, mare)),
                        ("attribution, 2,048 mixtures",
                         lambda: rdk.attribution(rashid, dataclasses.replace(rdk.rover("Tenacious"), wheel_count=6), mare))):

@@ -12,7 +12,7 @@ from playwright.sync_api import expect  # noqa: E402
 
 import rdk  # noqa: E402
 from rdk import keep  # noqa: E402
-from rdk.controls import MISSION_SPACE, VIEWS  # noqa: E402
+from rdk.explorer.controls import MISSION_SPACE, VIEWS  # noqa: E402
 
 if browser.CHROMIUM is None and os.environ.get("CI"):
     pytest.fail("no Chromium on CI", pytrace=False)

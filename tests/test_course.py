@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rdk
-from rdk import course
+import exercises as course
 
 REPO = Path(__file__).parents[1]
 PATHS = {path.name[:2]: path for path in sorted((REPO / "notebooks").glob("[0-9][0-9]_*.ipynb"))}
@@ -31,14 +31,14 @@ def given(value):
 
 @pytest.mark.parametrize("number", sorted(TASKS))
 def test_the_answer_of_an_exercise_passes_its_own_check(number):
-    verdict = rdk.check(number, TASKS[number].answer())
+    verdict = course.check(number, TASKS[number].answer())
     assert verdict and repr(verdict).startswith("Right"), verdict
-    assert rdk.check(number, given(TASKS[number].answer()))
+    assert course.check(number, given(TASKS[number].answer()))
 
 
 @pytest.mark.parametrize("number, hint", MISTAKES)
 def test_a_typical_mistake_gets_the_hint_meant_for_it(number, hint):
-    verdict = rdk.check(number, TASKS[number].mistakes[hint]())
+    verdict = course.check(number, TASKS[number].mistakes[hint]())
     assert not verdict
     if TASKS[number].judge is None:
         assert verdict.message == "Not yet. " + hint
@@ -73,26 +73,26 @@ def test_any_other_answer_gets_the_general_hint(number):
         other = words[0] if isinstance(task.expected, str) else set()
     else:
         other = np.asarray(task.expected, float) * 0 + 7.77e13
-    verdict = rdk.check(number, other)
+    verdict = course.check(number, other)
     assert not verdict and verdict.message in ["Not yet. " + hint for hint in (task.hint, *task.mistakes)]
 
 
 def test_numbers_agree_within_their_tolerance_only():
     right = TASKS["12.1"].expected
-    assert rdk.check("12.1", right * 1.004) and not rdk.check("12.1", right * 1.006)
-    assert rdk.check("12.1", np.float64(right)) and rdk.check("12.1", [right])
+    assert course.check("12.1", right * 1.004) and not course.check("12.1", right * 1.006)
+    assert course.check("12.1", np.float64(right)) and course.check("12.1", [right])
 
 
 def test_three_dots_are_no_answer_yet():
     for number in TASKS:
-        assert not rdk.check(number, ...) and "No answer yet" in rdk.check(number, ...).message
+        assert not course.check(number, ...) and "No answer yet" in course.check(number, ...).message
 
 
 def test_unknown_exercises_are_refused_and_the_known_ones_named():
     with pytest.raises(ValueError, match=r"no exercise '12\.9'; choose from 12\.1, 12\.2"):
-        rdk.check("12.9", 1.0)
+        course.check("12.9", 1.0)
     with pytest.raises(ValueError, match=r"no exercise 'Rashid'; choose from 00\.1|12\.1"):
-        rdk.check("Rashid", 1.0)
+        course.check("Rashid", 1.0)
     with pytest.raises(ValueError, match="registered twice"):
         course.exercise("12.1", lambda: 1.0, "")
 
@@ -101,14 +101,14 @@ def test_unknown_exercises_are_refused_and_the_known_ones_named():
                                     {}])
 def test_answers_of_the_wrong_kind_to_a_number(answer):
     with pytest.raises(ValueError, match="exercise 12.1 asks for one number"):
-        rdk.check("12.1", answer)
+        course.check("12.1", answer)
 
 
 @pytest.mark.parametrize("answer", [1.0, "a rover", None, {"wheel_radius_m": 0.1},
                                     rdk.random_designs(3, seed=1)])
 def test_answers_of_the_wrong_kind_to_a_design_task(answer):
     with pytest.raises(ValueError, match="exercise 12.4 asks for one Design; got"):
-        rdk.check("12.4", answer)
+        course.check("12.4", answer)
 
 
 def test_answers_of_the_wrong_kind_to_the_other_kinds(monkeypatch):
@@ -125,11 +125,11 @@ def test_answers_of_the_wrong_kind_to_the_other_kinds(monkeypatch):
             ("99.3", 1, "True or False"), ("99.3", "True", "True or False"), ("99.4", 1.0, "2 numbers"),
             ("99.4", [True, False], "2 numbers")):
         with pytest.raises(ValueError, match=f"exercise {number} asks for {words}.*; got"):
-            rdk.check(number, wrong)
-    assert rdk.check("99.1", " Sun ") and rdk.check("99.2", ["RAIN", "sun"]) and rdk.check("99.3", np.True_)
-    assert rdk.check("99.1", "rain").message == "Not yet. too wet" and not rdk.check("99.2", {"sun"})
-    assert rdk.check("99.4", [1.0, 0.0]) and rdk.check("99.4", np.array([1, 0]))
-    assert rdk.check("99.4", [0, 1]).message == "Not yet. swapped" and not rdk.check("99.4", [1.0, 0.1])
+            course.check(number, wrong)
+    assert course.check("99.1", " Sun ") and course.check("99.2", ["RAIN", "sun"]) and course.check("99.3", np.True_)
+    assert course.check("99.1", "rain").message == "Not yet. too wet" and not course.check("99.2", {"sun"})
+    assert course.check("99.4", [1.0, 0.0]) and course.check("99.4", np.array([1, 0]))
+    assert course.check("99.4", [0, 1]).message == "Not yet. swapped" and not course.check("99.4", [1.0, 0.1])
 
 
 # ---- the notebooks -----------------------------------------------------------------------------------------
@@ -175,9 +175,9 @@ def test_each_exercise_has_a_hint_a_place_for_the_answer_and_a_checked_solution(
                   and "solution" not in cell.metadata.get("tags", [])]
     folded = [cell for cell in cells if "solution" in cell.metadata.get("tags", [])]
     solutions = [cell for cell in folded if cell.cell_type == "code"]
-    assert [cell.source for cell in open_cells] == [f'answer = ...\nrdk.check("{number}", answer)']
+    assert [cell.source for cell in open_cells] == [f'answer = ...\ncheck("{number}", answer)']
     assert "No answer yet" in open_cells[0].outputs[0]["data"]["text/plain"]
-    assert any(f'assert rdk.check("{number}", ' in cell.source
+    assert any(f'assert check("{number}", ' in cell.source
                for cell in solutions), "the solution passes its check"
     # a folded cell still shows its output when it runs: the heading above hides all of it in JupyterLab
     assert folded[0].source == "#### Solution" and folded[0].metadata["jp-MarkdownHeadingCollapsed"] is True

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import rdk
-from rdk.design import DESIGN_SPACE, Study
+from rdk.design import DESIGN_SPACE, Problem
 from rdk.terramechanics import Soil, Wheel
 
 VALUES = dict(wheel_radius_m=0.10, wheel_width_m=0.08, grouser_height_m=0.015, grouser_count=14,
@@ -238,7 +238,7 @@ def test_defaults():
     plain = rdk.Scenario(name="x", latitude_deg=0, soil=SOIL, duration_earth_days=1, slope_deg=0,
                          duty_cycle=0.1)
     assert plain.traverse_limit_km == math.inf and plain.payload_mass_kg == plain.panel_tilt_deg == 0
-    assert plain.study == Study() and rdk.Model() == rdk.Model() != rdk.Model(dust_factor=0.8)
+    assert plain.problem == Problem() and rdk.Model() == rdk.Model() != rdk.Model(dust_factor=0.8)
 
 
 # ---- random designs ----------------------------------------------------------------------------------------

@@ -22,10 +22,11 @@ import numpy as np
 import pytest
 
 import rdk
-from rdk import explain, explorer as explorer_module, keep, pictures
-from rdk.controls import MISSION_SPACE, OWN, SCRIPTS, VIEWS, Refresher
+from rdk import explain, keep
+from rdk.explorer import app as explorer_module, pictures
+from rdk.explorer.controls import MISSION_SPACE, OWN, SCRIPTS, VIEWS, Refresher
 from rdk.explorer import Explorer
-from rdk.tradespace import Study
+from rdk.tradespace import Problem
 
 MARE = "equatorial_mare_traverse"
 CANONICAL = rdk.scenario_names("canonical")
@@ -120,7 +121,7 @@ def test_choosing_a_rover_or_a_mission_shows_its_values_and_its_study(explorer):
         assert explorer.scenario == rdk.scenario(name)
     for name in CANONICAL:
         explorer.set(mission=name)
-        problem, study = explorer._problem(), rdk.scenario(name).study
+        problem, study = explorer._problem(), rdk.scenario(name).problem
         assert problem["objectives"] == study.objectives and problem["seed"] == study.seed
         assert tuple(problem["constraints"]) == study.constraints
 
@@ -594,7 +595,7 @@ def test_the_live_front_follows_the_mission(explorer):
         assert_current(explorer)
         fronts.append(explorer.front)
         assert fronts[-1] is not fronts[-2] and len(fronts[-1])
-        assert fronts[-1].scenario == dataclasses.replace(explorer.scenario, study=Study())
+        assert fronts[-1].scenario == dataclasses.replace(explorer.scenario, problem=Problem())
         assert len(fronts[-1].objective_history) == 12   # half of the first: it starts from the last front
     assert len(fronts[0].objective_history) == 24
     explorer.set(wheel_radius_m=0.15)                    # the design is no part of the mission
@@ -647,7 +648,7 @@ def test_a_kept_design_comes_back(explorer, name):
         assert f"{name} loaded" in explorer.controls.notice.value
         assert_current(explorer)
     if name == "design.json":
-        assert explorer.scenario == dataclasses.replace(mission, study=Study())
+        assert explorer.scenario == dataclasses.replace(mission, problem=Problem())
 
 
 @pytest.mark.parametrize("name", ["front.json", "front.csv"])

@@ -10,7 +10,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 import rdk  # noqa: E402
-from rdk import plots, validation  # noqa: E402
+import drawings as plots  # noqa: E402
+from rdk import validation  # noqa: E402
 
 X = np.linspace(0.0, 10.0, 11)
 

@@ -8,7 +8,8 @@ import pytest
 from dataclasses import replace
 
 import rdk
-from rdk import plots
+import drawings as plots
+from rdk import figures
 
 RASHID = rdk.rover("Rashid-1")
 MARE, POLAR = rdk.scenario("equatorial_mare_traverse"), rdk.scenario("polar_prospecting")
@@ -126,7 +127,7 @@ def test_live_picture_follows_its_sliders_and_has_words():
         figure.add_axes((0.1, 0.1, 0.8, 0.8)).plot([0, a], [0, b])
         return f'a < {a:g} and "b" is {b:g}'
 
-    box = plots.live(draw, a=(0, 10, 1, 2, "a (kg)"), b=(0, 1, 0.1, 0.5, "b (deg)"))
+    box = figures.live(draw, a=(0, 10, 1, 2, "a (kg)"), b=(0, 1, 0.1, 0.5, "b (deg)"))
     before = box.picture.value
     assert 'alt="a &lt; 2 and &quot;b&quot; is 0.5"' in before and "data:image/png;base64," in before
     box.sliders["a"].value = 7

@@ -9,7 +9,7 @@ from numpy.testing import assert_array_equal
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
-from rdk import plots  # noqa: E402
+import drawings as plots  # noqa: E402
 
 
 @pytest.fixture(autouse=True)

@@ -9,7 +9,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 import rdk  # noqa: E402
-from rdk import plots  # noqa: E402
+import drawings as plots  # noqa: E402
 
 RISING = np.linspace(0.0, 1.0, 7)
 

@@ -10,7 +10,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 import rdk  # noqa: E402
-from rdk import plots, terramechanics, validation  # noqa: E402
+import drawings as plots  # noqa: E402
+from rdk import terramechanics, validation  # noqa: E402
 
 WHEEL, SOIL = rdk.Wheel(0.10, 0.08, 0.015, 14), rdk.soil("apollo-nominal")
 X = np.linspace(0.0, 1.0, 7)

@@ -12,8 +12,8 @@ import pytest
 
 import rdk
 from rdk import keep
-from rdk.course import capstone
-from rdk.design import Study
+from exercises import capstone
+from rdk.design import Problem
 from rdk.report import Requirement, report, requirements, write
 
 MARE = rdk.scenario("equatorial_mare_traverse")
@@ -84,7 +84,7 @@ def test_the_design_is_listed_and_travels_with_the_page(page):
     assert listed["wheel radius"] == "0.1 m" and listed["grouser count"] == "14" and len(listed) == 11
     link = next(link for link in page.links if link["download"] == "design.json")
     design, mission = keep.from_json(base64.b64decode(link["href"].split(",")[1]).decode())
-    assert design == RASHID and replace(mission, study=MARE.study) == MARE
+    assert design == RASHID and replace(mission, problem=MARE.problem) == MARE
     json.loads(base64.b64decode(link["href"].split(",")[1]))
 
 
@@ -96,7 +96,7 @@ def test_limits_of_the_project_are_shown_and_a_variable_outside_is_marked():
 
 
 def test_demands_are_those_of_the_scenario_with_the_drive_itself_first():
-    asked = replace(MARE, required_obstacle_height_m=0.04, study=Study(
+    asked = replace(MARE, required_obstacle_height_m=0.04, problem=Problem(
         constraints=(("range_km", ">=", 50), ("total_mass_kg", "<=", 16))))
     found = requirements(RASHID, asked, draws=200, seed=3)
     assert [(d.metric, d.sign, d.limit) for d in found] == [
@@ -113,7 +113,7 @@ def test_demands_are_those_of_the_scenario_with_the_drive_itself_first():
 
 
 def test_the_driver_of_a_demand_is_the_input_that_moves_it_most():
-    asked = replace(MARE, study=Study(constraints=(("total_mass_kg", "<=", 16), ("obstacle_capability_m",
+    asked = replace(MARE, problem=Problem(constraints=(("total_mass_kg", "<=", 16), ("obstacle_capability_m",
                                                                                  ">=", 0.01))))
     mass, obstacle = requirements(RASHID, asked, draws=300)[1:]
     assert obstacle.driver == ""                         # the wheel's radius is not uncertain
@@ -123,14 +123,14 @@ def test_the_driver_of_a_demand_is_the_input_that_moves_it_most():
 
 
 def test_verdict_and_risks_say_what_the_table_says():
-    asked = replace(MARE, study=Study(constraints=(("total_mass_kg", "<=", 16), ("range_km", ">=", 1))))
+    asked = replace(MARE, problem=Problem(constraints=(("total_mass_kg", "<=", 16), ("range_km", ">=", 1))))
     text = report(RASHID, asked, "x", draws=100)
     share = requirements(RASHID, asked, draws=100)[1].share
     assert "<b>Misses 1 of 3 demands: total mass ≤ 16 kg.</b>" in text and 'class="verdict missed"' in text
     assert f"“total mass ≤ 16 kg” fails in {100 * (1 - share):.0f} % of the draws" in text
     assert rdk.explain.binding(RASHID, asked, rdk.evaluate(RASHID, asked)).sentence in text
     assert [mark for mark, cells in Page(text).rows if cells[:1] == ["total mass ≤ 16 kg"]] == ["missed"]
-    easy = report(RASHID, replace(MARE, slope_deg=0.0, study=Study(constraints=(("total_mass_kg", "<=", 99),
+    easy = report(RASHID, replace(MARE, slope_deg=0.0, problem=Problem(constraints=(("total_mass_kg", "<=", 99),
                                                                                 ))), "x",
                   draws=100)
     assert "<b>Meets all 2 demands of the mission.</b>" in easy

@@ -10,8 +10,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import rdk
-from rdk import catalog, contact, rediscovery, rules, tradespace, validation
-from rdk.validation import searches
+from rdk import _contact as contact
+from rdk import catalog, rediscovery, rules, tradespace, validation
+import ledger
+
+searches = ledger
 
 MARE, HIGHLAND = rdk.scenario("equatorial_mare_traverse"), rdk.scenario("highland_slope_capability")
 NAMES = rdk.scenario_names("canonical")
@@ -26,7 +29,7 @@ def front():
 def search(designs, scenario=MARE, history=()):
     """A Front of given designs, without a search."""
     performance = rdk.evaluate(designs, scenario)
-    return tradespace.Front(designs, performance, scenario, rdk.Model(), scenario.study, history)
+    return tradespace.Front(designs, performance, scenario, rdk.Model(), scenario.problem, history)
 
 
 # ---- statistics of fronts ----------------------------------------------------------------------------------
@@ -64,7 +67,7 @@ def test_generations_of_one_search_are_those_of_shorter_searches():
 
 
 def test_crossover_is_the_lowest_height_with_six_wheels():
-    fronts = tradespace.study([MARE], obstacle_heights_m=(0, 0.08, 0.12), population=20, generations=5)
+    fronts = tradespace.fronts([MARE], obstacle_heights_m=(0, 0.08, 0.12), population=20, generations=5)
     found = rules.crossover(rules.front_statistics(fronts.values())).iloc[0]
     assert found.crossover_m == 0.12, "a rigid wheel of at most 0.20 m climbs 0.10 m"
     assert found.highest_rigid_m == 0.08
@@ -161,7 +164,7 @@ def test_family_spans_its_ranges(name):
     assert all(s.panel_tilt_deg == min(80, abs(s.latitude_deg)) for s in found)
     assert all(s.panel_azimuth_deg == (0 if s.latitude_deg < 0 else 180) for s in found)
     base = rdk.scenario(name)
-    assert all(s.soil == base.soil and s.study == base.study for s in found)
+    assert all(s.soil == base.soil and s.problem == base.problem for s in found)
     assert len({s.name for s in found}) == 8 and rules.family(name, 8, seed=4) == found
 
 
@@ -315,14 +318,14 @@ def test_light_designs_are_uniform_in_the_light_part_of_the_space(name):
 def small_ledger():
     """The stochastic and cost rows with every search cut to a few generations of a small population."""
     patch = pytest.MonkeyPatch()
-    study, pareto_front, rediscover = tradespace.study, tradespace.pareto_front, rediscovery.rediscover
+    study, pareto_front, rediscover = tradespace.fronts, tradespace.pareto_front, rediscovery.rediscover
     sizes = []
 
     def small_study(*arguments, generations=60, **options):
         sizes.append((generations, options))
         return study(*arguments, population=12, generations=min(generations, 90), **options)
 
-    patch.setattr(searches, "study", small_study)
+    patch.setattr(searches, "fronts", small_study)
     patch.setattr(searches, "pareto_front", lambda scenario, **options: pareto_front(
         scenario, population=12, **options | {"generations": 5}))
     patch.setattr(rediscovery, "rediscover", lambda **options: rediscover(
@@ -332,7 +335,7 @@ def small_ledger():
         found, **options | {"count": 500}))
     patch.setattr(searches.rules, "OBSTACLE_HEIGHTS_M", (0.0, 0.08, 0.12))
     try:
-        yield validation.paper_ledger(("stochastic", "cost")).set_index("id"), sizes
+        yield ledger.paper_ledger(("stochastic", "cost")).set_index("id"), sizes
     finally:
         patch.undo()
 
@@ -347,10 +350,10 @@ def test_ledger_computes_every_row(small_ledger):
 
 
 def test_ledger_of_one_section():
-    table = validation.paper_ledger(("deterministic",), sections=["flown rovers"])
+    table = ledger.paper_ledger(("deterministic",), sections=["flown rovers"])
     assert set(table.section) == {"flown rovers"} and len(table) == 8
     with pytest.raises(ValueError, match="sections must be among terramechanics validation, .*; got 'weather'"):
-        validation.paper_ledger(sections=["weather"])
+        ledger.paper_ledger(sections=["weather"])
 
 
 def test_ledger_says_why_where_it_disagrees(small_ledger):
@@ -376,7 +379,7 @@ def test_seed_offset_moves_the_searches():
     patched = searches.Searches(seed_offset=100)
     calls = []
     patch = pytest.MonkeyPatch()
-    patch.setattr(searches, "study", lambda scenarios, **options: calls.append(scenarios[0].study.seed) or {})
+    patch.setattr(searches, "fronts", lambda scenarios, **options: calls.append(scenarios[0].problem.seed) or {})
     try:
         patched.canonical  # noqa: B018
     finally:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 import rdk
-from rdk import contact
+from rdk import _contact as contact
 from rdk.terramechanics import (Soil, Wheel, climb, compaction_resistance, contact_stress, grouser_lift,
                                 slip_balance, slope_capability, wheel_forces)
 

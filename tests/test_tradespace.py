@@ -45,7 +45,7 @@ def calls(monkeypatch):
 
 def minimised(front):
     return np.stack([getattr(front.performance, name) * (-1.0 if direction == "max" else 1.0)
-                     for name, direction in front.study.objectives.items()], axis=1)
+                     for name, direction in front.problem.objectives.items()], axis=1)
 
 
 def assert_same_bits(one, other):
@@ -57,7 +57,7 @@ def assert_same_bits(one, other):
     for x, y in zip(one.objective_history, other.objective_history):
         np.testing.assert_array_equal(x, y)
     np.testing.assert_array_equal(one.history, other.history)
-    assert (one.scenario, one.study, one.message) == (other.scenario, other.study, other.message)
+    assert (one.scenario, one.problem, one.message) == (other.scenario, other.problem, other.message)
     assert one.model.numbers() == other.model.numbers()
 
 
@@ -93,7 +93,7 @@ def test_designs_of_a_front_can_be_built(small):
 def test_a_search_beats_as_many_random_designs(small):
     random = rdk.evaluate(rdk.random_designs(12 * 8, seed=3), MARE)
     F = np.stack([-random.range_km, random.total_mass_kg, -random.slope_capability_deg], axis=1)
-    assert small.history[-1] > ts.hypervolume(F[random.range_km >= 0.1], small.study.objectives, MARE)
+    assert small.history[-1] > ts.hypervolume(F[random.range_km >= 0.1], small.problem.objectives, MARE)
 
 
 def test_the_paper_settings_reach_pymoo():
@@ -178,7 +178,7 @@ def test_of_designs_alike_in_every_objective_a_front_has_one():
 
 def test_the_seed_of_the_study_is_the_default():
     names = "crater_rim_survey", MARE.name, HIGHLAND.name, "polar_prospecting"
-    assert [rdk.scenario(name).study.seed for name in names] == [12, 13, 14, 15]
+    assert [rdk.scenario(name).problem.seed for name in names] == [12, 13, 14, 15]
     few = dict(population=6, generations=2)
     assert_same_bits(rdk.pareto_front(MARE, **few), rdk.pareto_front(MARE, seed=13, **few))
 
@@ -291,7 +291,7 @@ def test_the_catalogue_poses_every_canonical_scenario_as_its_table_says():
     table = {row["scenario"]: row for row in catalog.rows("studies.csv")}
     assert set(table) == set(rdk.scenario_names("canonical"))
     for name, row in table.items():
-        study = rdk.scenario(name).study
+        study = rdk.scenario(name).problem
         assert ";".join(f"{field}:{way}" for field, way in study.objectives.items()) == row["objectives"]
         assert ";".join(f"{field} {sign} {x:g}" for field, sign, x in study.constraints) == row["constraints"]
         limit = row["traverse_limit_km"]
@@ -300,9 +300,9 @@ def test_the_catalogue_poses_every_canonical_scenario_as_its_table_says():
 
 def test_highland_is_posed_by_its_study_and_not_by_its_name():
     few = dict(population=8, generations=3, seed=1)
-    other = replace(MARE, study=HIGHLAND.study)
+    other = replace(MARE, problem=HIGHLAND.problem)
     front = rdk.pareto_front(other, **few)
-    assert list(front.study.objectives) == ["range_km", "total_mass_kg"]
+    assert list(front.problem.objectives) == ["range_km", "total_mass_kg"]
     assert front.scenario.traverse_limit_km == 120 and np.all(front.performance.slope_capability_deg >= 15)
     renamed, named = (rdk.pareto_front(s, **few) for s in (replace(HIGHLAND, name="somewhere"), HIGHLAND))
     np.testing.assert_array_equal(renamed.performance.range_km, named.performance.range_km)
@@ -321,7 +321,7 @@ def test_objectives_and_constraints_can_be_any_performance_fields():
 def test_a_required_obstacle_becomes_a_constraint():
     blocked = replace(MARE, required_obstacle_height_m=0.15)
     front = rdk.pareto_front(blocked, population=16, generations=8, seed=2)
-    assert front.study.constraints[-1] == ("obstacle_capability_m", ">=", 0.15)
+    assert front.problem.constraints[-1] == ("obstacle_capability_m", ">=", 0.15)
     assert np.all(front.performance.obstacle_capability_m >= 0.15) and np.all(front.designs.wheel_count == 6)
 
 
@@ -486,7 +486,7 @@ SCENARIOS = [rdk.scenario("crater_rim_survey"), HIGHLAND]
 
 @pytest.fixture(scope="module")
 def serial():
-    return rdk.study(SCENARIOS, **TINY)
+    return rdk.fronts(SCENARIOS, **TINY)
 
 
 def assert_same_study(one, other):
@@ -511,43 +511,43 @@ def test_a_study_is_every_combination_in_order(serial):
 def test_a_process_pool_gives_the_same_bits(serial):
     spawned = multiprocessing.get_context("spawn")              # nothing is inherited: everything travels
     with ProcessPoolExecutor(2, mp_context=spawned) as pool:
-        assert_same_study(serial, rdk.study(SCENARIOS, **TINY, executor=pool))
+        assert_same_study(serial, rdk.fronts(SCENARIOS, **TINY, executor=pool))
 
 
 def test_threads_give_the_same_bits(serial):
     with ThreadPoolExecutor(3) as pool:
-        assert_same_study(serial, rdk.study(SCENARIOS, **TINY, executor=pool))
+        assert_same_study(serial, rdk.fronts(SCENARIOS, **TINY, executor=pool))
 
 
 def test_a_dask_cluster_gives_the_same_bits(serial, tmp_path):
     distributed = pytest.importorskip("distributed")
     options = dict(n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=tmp_path)
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
-        found = rdk.study(SCENARIOS, **TINY, executor=client.get_executor(), folder=tmp_path / "fronts")
+        found = rdk.fronts(SCENARIOS, **TINY, executor=client.get_executor(), folder=tmp_path / "fronts")
     assert_same_study(serial, found)
     assert len(list((tmp_path / "fronts").glob("*.json"))) == 8
 
 
 def test_defaults_are_each_scenarios_seed_and_obstacles_reach_the_search():
-    without_seed = replace(MARE, study=replace(MARE.study, seed=None))
+    without_seed = replace(MARE, problem=replace(MARE.problem, seed=None))
     few = dict(population=8, generations=2)
-    found = rdk.study([SCENARIOS[0], without_seed], **few, obstacle_heights_m=[0.0, 0.12])
+    found = rdk.fronts([SCENARIOS[0], without_seed], **few, obstacle_heights_m=[0.0, 0.12])
     assert [(c.seed, c.obstacle_height_m) for c in found] == [(12, 0.0), (12, 0.12), (0, 0.0), (0, 0.12)]
     for case, front in found.items():
         assert len(front) and np.all(front.performance.obstacle_capability_m >= case.obstacle_height_m)
 
 
 def test_an_empty_front_in_a_study_is_a_message_and_no_warning():
-    hard = replace(MARE, study=replace(MARE.study, constraints=(("range_km", ">=", 81.0),)))
+    hard = replace(MARE, problem=replace(MARE.problem, constraints=(("range_km", ">=", 81.0),)))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        (front,) = rdk.study([hard], population=4, generations=2).values()
+        (front,) = rdk.fronts([hard], population=4, generations=2).values()
     assert len(front) == 0 and "range_km >= 81" in front.message
 
 
 def test_progress_of_a_study(serial):
     seen = []
-    found = rdk.study(SCENARIOS, **TINY, on_front=lambda *progress: seen.append(progress))
+    found = rdk.fronts(SCENARIOS, **TINY, on_front=lambda *progress: seen.append(progress))
     assert [s[:2] for s in seen] == [(i, 8) for i in range(1, 9)]
     assert [s[2] for s in seen] == list(found) and [s[3] for s in seen] == list(found.values())
 
@@ -572,17 +572,17 @@ def test_an_interrupted_study_keeps_what_it_has_and_resumes(serial, tmp_path, se
             raise KeyboardInterrupt
 
     with ThreadPoolExecutor(1) as pool, pytest.raises(KeyboardInterrupt):
-        rdk.study(SCENARIOS, **TINY, folder=tmp_path, on_front=interrupt, executor=pool if parallel else None)
+        rdk.fronts(SCENARIOS, **TINY, folder=tmp_path, on_front=interrupt, executor=pool if parallel else None)
     kept = sorted(path.name for path in tmp_path.iterdir())
     assert len(kept) == 3 and all(name.endswith(".json") for name in kept)
     assert len(searches) <= 5                                   # an interrupted pool starts nothing more
     searches.clear()
     seen = []
-    resumed = rdk.study(SCENARIOS, **TINY, folder=tmp_path, on_front=lambda *p: seen.append(p[0]))
+    resumed = rdk.fronts(SCENARIOS, **TINY, folder=tmp_path, on_front=lambda *p: seen.append(p[0]))
     assert_same_study(serial, resumed)
     assert len(searches) == 5 and seen == list(range(1, 9))
     searches.clear()
-    assert_same_study(serial, rdk.study(SCENARIOS, **TINY, folder=tmp_path))
+    assert_same_study(serial, rdk.fronts(SCENARIOS, **TINY, folder=tmp_path))
     assert not searches
 
 
@@ -601,14 +601,14 @@ DAMAGES = {
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_a_damaged_file_is_computed_anew(tmp_path, searches, damage):
     options = dict(population=8, generations=2, seeds=[1, 2], folder=tmp_path)
-    found = rdk.study([MARE], **options)
+    found = rdk.fronts([MARE], **options)
     first = tmp_path / f"{next(iter(found)).label}.json"
     sound = first.read_text(encoding="utf-8")
     first.write_text(DAMAGES[damage](sound), encoding="utf-8")
     assert first.read_text(encoding="utf-8") != sound
     searches.clear()
     with pytest.warns(UserWarning, match=f"{first.name} in .* is damaged and computed anew"):
-        again = rdk.study([MARE], **options)
+        again = rdk.fronts([MARE], **options)
     assert [seed for _, seed, _ in searches] == [1]
     assert_same_study(found, again)
     assert first.read_text(encoding="utf-8") == sound
@@ -616,10 +616,10 @@ def test_a_damaged_file_is_computed_anew(tmp_path, searches, damage):
 
 def test_bytes_that_are_no_text_are_damage_too(tmp_path):
     options = dict(population=4, generations=1, folder=tmp_path)
-    (case,) = rdk.study([MARE], **options)
+    (case,) = rdk.fronts([MARE], **options)
     (tmp_path / f"{case.label}.json").write_bytes(b"\xff\xfe\x00")
     with pytest.warns(UserWarning, match="damaged"):
-        rdk.study([MARE], **options)
+        rdk.fronts([MARE], **options)
 
 
 def test_a_file_is_complete_or_absent(tmp_path, monkeypatch):
@@ -630,9 +630,9 @@ def test_a_file_is_complete_or_absent(tmp_path, monkeypatch):
     with monkeypatch.context() as broken:
         broken.setattr(ts.os, "replace", full)
         with pytest.raises(OSError, match="no space"):
-            rdk.study([MARE], **options)
+            rdk.fronts([MARE], **options)
     assert not list(tmp_path.glob("*.json"))
-    rdk.study([MARE], **options)
+    rdk.fronts([MARE], **options)
     assert len(list(tmp_path.glob("*.json"))) == 1
 
 
@@ -643,7 +643,7 @@ def test_every_setting_has_a_file_of_its_own_and_equal_settings_share_one():
         return replace(nominal, scenario=scenario, **changed).label
 
     others = [label(replace(MARE, slope_deg=15.0000001)), label(replace(MARE, soil=rdk.soil("apollo-loose"))),
-              label(replace(MARE, study=HIGHLAND.study)), label(model=rdk.Model(dust_factor=0.8)),
+              label(replace(MARE, problem=HIGHLAND.problem)), label(model=rdk.Model(dust_factor=0.8)),
               label(seed=2), label(shear_scale=0.7), label(obstacle_height_m=0.1), label(population=9),
               label(generations=3)]
     assert len({label(), *others}) == 10
@@ -651,16 +651,16 @@ def test_every_setting_has_a_file_of_its_own_and_equal_settings_share_one():
 
 
 def test_numpy_numbers_and_iterators_name_the_same_files(tmp_path, searches):
-    rdk.study([MARE], population=4, generations=1, seeds=[1, 2], shear_scales=[0.85], folder=tmp_path)
+    rdk.fronts([MARE], population=4, generations=1, seeds=[1, 2], shear_scales=[0.85], folder=tmp_path)
     searches.clear()
-    rdk.study(iter([MARE]), population=4, generations=1, seeds=np.arange(1, 3), shear_scales=np.array([0.85]),
+    rdk.fronts(iter([MARE]), population=4, generations=1, seeds=np.arange(1, 3), shear_scales=np.array([0.85]),
               folder=tmp_path)
     assert not searches and len(list(tmp_path.iterdir())) == 2
 
 
 def test_a_scenario_may_have_any_name(tmp_path):
     folder = tmp_path / "deep" / "er"
-    rdk.study([replace(MARE, name="mare / flat: 5°?")], population=4, generations=1, folder=folder)
+    rdk.fronts([replace(MARE, name="mare / flat: 5°?")], population=4, generations=1, folder=folder)
     (path,) = folder.iterdir()
     assert path.name.startswith("mare-flat-5") and path.suffix == ".json"
 
@@ -677,10 +677,10 @@ def test_a_scenario_may_have_any_name(tmp_path):
     (dict(population=3), "population"), (dict(generations=0), "generations")])
 def test_bad_arguments_of_a_study_are_named(changed, words):
     with pytest.raises(ValueError, match=words):
-        rdk.study(**(dict(scenarios=[MARE], population=4, generations=1) | changed))
+        rdk.fronts(**(dict(scenarios=[MARE], population=4, generations=1) | changed))
 
 
 def test_an_error_in_a_worker_reaches_the_caller():
     many = replace(MARE, slope_deg=np.array([1.0, 2.0]))
     with ThreadPoolExecutor(2) as pool, pytest.raises(ValueError, match="single mission"):
-        rdk.study([many, MARE], population=4, generations=1, executor=pool)
+        rdk.fronts([many, MARE], population=4, generations=1, executor=pool)

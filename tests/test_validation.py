@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 import rdk
 import scalar_transcription as scalar
 from rdk import catalog, validation
-from rdk.validation import rows, wheels
+import ledger as paper
+from rdk import validation as wheels
 
 TARGETS = catalog.table("paper_targets.csv").set_index("id")
 DETERMINISTIC = TARGETS.index[TARGETS.kind == "deterministic"]
@@ -19,7 +20,7 @@ DETERMINISTIC = TARGETS.index[TARGETS.kind == "deterministic"]
 
 @pytest.fixture(scope="module")
 def ledger():
-    return validation.paper_ledger(("deterministic",)).set_index("id")
+    return paper.paper_ledger(("deterministic",)).set_index("id")
 
 
 @pytest.fixture(scope="module")
@@ -82,9 +83,9 @@ def test_summary_takes_all_points_and_the_paper_leaves_no_other_choice(points):
     moving = validation.single_wheel_summary(points.query("slip > 0")).set_index(["experiment", "quantity"])
     pulling = validation.single_wheel_summary(points.query("drawbar_pull_n > 0"))
     pulling = pulling.set_index(["experiment", "quantity"])
-    assert not validation.accepts(TARGETS.accept["z_ding"],
+    assert not paper.accepts(TARGETS.accept["z_ding"],
                                   moving.median_abs_error_pct[("ding-2011", "sinkage")])
-    assert not validation.accepts(TARGETS.accept["dp_wang"],
+    assert not paper.accepts(TARGETS.accept["dp_wang"],
                                   pulling.median_abs_error_pct[("wang-han-2016", "drawbar_pull")])
 
 
@@ -272,7 +273,7 @@ def test_our_numbers_do_not_come_from_the_bands(monkeypatch, ledger):
         return table.assign(accept="-9..-8", paper_value="?") if name == "paper_targets.csv" else table
 
     monkeypatch.setattr(catalog, "table", other)
-    again = validation.paper_ledger(("deterministic",)).set_index("id")
+    again = paper.paper_ledger(("deterministic",)).set_index("id")
     assert not again.agrees.any()
     assert [str(x) for x in again.ours] == [str(x) for x in ledger.ours]
 
@@ -285,14 +286,14 @@ def test_a_changed_measurement_changes_its_row(monkeypatch):
         return table.assign(drawbar_pull_n=table.drawbar_pull_n * 2) if name == "single_wheel.csv" else table
 
     monkeypatch.setattr(catalog, "table", other)
-    evidence = rows.Evidence()
-    found = rows.ROWS["dp_ding"](evidence)[0]
-    assert not validation.accepts(TARGETS.accept["dp_ding"], found)
+    evidence = paper.Evidence()
+    found = paper.ROWS["dp_ding"](evidence)[0]
+    assert not paper.accepts(TARGETS.accept["dp_ding"], found)
 
 
 def test_ledger_refuses_an_unknown_kind():
     with pytest.raises(ValueError, match="deterministic, stochastic, cost; got 'guessed'"):
-        validation.paper_ledger(kinds=("guessed",))
+        paper.paper_ledger(kinds=("guessed",))
 
 
 @pytest.mark.parametrize("accept, inside, outside", [
@@ -310,20 +311,20 @@ def test_ledger_refuses_an_unknown_kind():
     ("-9..-8", [-8.5], [8.5, True]),
 ])
 def test_bands_are_read(accept, inside, outside):
-    assert all(validation.accepts(accept, value) is True for value in inside)
-    assert not any(validation.accepts(accept, value) for value in outside)
+    assert all(paper.accepts(accept, value) is True for value in inside)
+    assert not any(paper.accepts(accept, value) for value in outside)
 
 
 def test_bands_that_ask_only_for_a_report_and_bands_that_cannot_be_read():
-    assert validation.accepts("report ours beside the original's", 1.0) is None
+    assert paper.accepts("report ours beside the original's", 1.0) is None
     for damaged in "26.5 to 27.7", "", ">= 3..4", "about 5":
         with pytest.raises(ValueError, match="accept must be"):
-            validation.accepts(damaged, 27.0)
+            paper.accepts(damaged, 27.0)
 
 
 @pytest.mark.parametrize("accept", TARGETS.accept.unique())
 def test_every_band_of_the_file_can_be_read(accept):
-    assert validation.accepts(accept, (1.0, 2.0)) in (True, False, None)
+    assert paper.accepts(accept, (1.0, 2.0)) in (True, False, None)
 
 
 def test_constants_of_studies_are_found_by_name():

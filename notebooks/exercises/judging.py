@@ -7,7 +7,7 @@ from typing import Callable
 
 import numpy as np
 
-from ..design import Design
+from rdk.design import Design
 
 EXERCISES = {}
 """Every exercise by its number, filled by the modules of the exercises."""
@@ -72,7 +72,7 @@ def exercise(number, answer, hint, mistakes=None, **options):
 
 
 def judge(number, answer):
-    """The verdict on the answer to a registered exercise; see `rdk.check`."""
+    """The verdict on the answer to a registered exercise; see `check`."""
     number = str(number)
     if number not in EXERCISES:
         near = [n for n in EXERCISES if n[:2] == number[:2]] or list(EXERCISES)

@@ -12,9 +12,9 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from . import catalog, terramechanics
-from .design import DESIGN_SPACE
-from .plots import BLACK, BLUE, GREEN, GREY, ORANGE
+from .. import catalog, terramechanics
+from ..design import DESIGN_SPACE
+from ..figures import BLACK, BLUE, GREEN, GREY, ORANGE
 
 SIZE = (6.0, 3.3)                                        # inches, at DPI
 DPI = 96
@@ -290,7 +290,7 @@ def front(figure, x, ys, names, picked=None, here=None, size=None, title=""):
 
 def published():
     """Names of the published rovers and their designs as one population."""
-    from .design import Design
+    from ..design import Design
     names = catalog.rover_names()
     designs = [catalog.rover(n) for n in names]
     return names, Design(**{v: np.array([getattr(d, v) for d in designs]) for v in DESIGN_SPACE})

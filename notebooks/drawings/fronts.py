@@ -4,7 +4,7 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .style import BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, _axes, _lines
+from rdk.figures import BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, panels, curves
 
 
 SLOPE_BANDS = ((-np.inf, 20, "o", 18), (20, 30, "s", 30), (30, 34, "^", 46), (34, np.inf, "D", 62))
@@ -25,7 +25,7 @@ def dominated_designs(mass_kg, slope_deg, dominated, chosen):
     -------
     matplotlib.figure.Figure
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     front = np.flatnonzero(~dominated)[np.argsort(mass_kg[~dominated])]
     ax.plot(mass_kg[dominated], slope_deg[dominated], "o", color=GREY, markerfacecolor="white", markersize=5,
             label="dominated")
@@ -59,7 +59,7 @@ def weighted_sums(mass_kg, height_m, wheel_count, weight, pick):
         Left, the front and the picked points, the larger the more weights pick them; right, the picked obstacle
         capability against the weight.
     """
-    figure, (ax, right) = _axes(1, 2, figsize=(9.4, 3.8), sharey=True)
+    figure, (ax, right) = panels(1, 2, figsize=(9.4, 3.8), sharey=True)
     picked, counts = np.unique(pick, return_counts=True)
     for wheels, marker, colour in (4, "o", BLUE), (6, "^", GREEN):
         here = wheel_count == wheels
@@ -91,7 +91,7 @@ def ranks_and_crowding(mass_kg, slope_deg, rank, crowding, chosen):
     -------
     matplotlib.figure.Figure
     """
-    figure, (ax, right) = _axes(1, 2, figsize=(9.4, 3.8))
+    figure, (ax, right) = panels(1, 2, figsize=(9.4, 3.8))
     for r in np.unique(rank):
         here = np.flatnonzero(rank == r)[np.argsort(mass_kg[rank == r])]
         k = (r - 1) % len(COLOURS)
@@ -116,20 +116,20 @@ def ranks_and_crowding(mass_kg, slope_deg, rank, crowding, chosen):
     return figure
 
 
-def variation_operators(panels):
+def variation_operators(content):
     """Where the children of a crossover or a mutation fall, against the operator's formula.
 
     Parameters
     ----------
-    panels : dict of str to (ndarray, sequence of float, ndarray, ndarray)
+    content : dict of str to (ndarray, sequence of float, ndarray, ndarray)
         By title: genes of the children; genes of the parents; where the density is given, and the density.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(1, len(panels), figsize=(4.7 * len(panels), 3.2), squeeze=False)
-    for ax, (title, (children, parents, x, density)) in zip(axes[0], panels.items()):
+    figure, axes = panels(1, len(content), figsize=(4.7 * len(content), 3.2), squeeze=False)
+    for ax, (title, (children, parents, x, density)) in zip(axes[0], content.items()):
         ax.hist(children, bins=80, density=True, color="#9ccbe6", label="children")
         ax.plot(x, density, color=BLACK, lw=1.2, label="formula")
         for i, parent in enumerate(parents):
@@ -152,7 +152,7 @@ def front_history(snapshots):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(1, len(snapshots), figsize=(9.6, 2.9), sharex=True, sharey=True)
+    figure, axes = panels(1, len(snapshots), figsize=(9.6, 2.9), sharex=True, sharey=True)
     for k, (ax, (title, (mass_kg, slope_deg))) in enumerate(zip(axes, snapshots.items())):
         ax.plot(mass_kg, slope_deg, MARKERS[k], color=COLOURS[k], markersize=4)
         ax.set(xlabel="total mass (kg)")
@@ -175,7 +175,7 @@ def pareto_fronts(fronts, published=None):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(2, 2, figsize=(9.4, 6.6))
+    figure, axes = panels(2, 2, figsize=(9.4, 6.6))
     drawn = None
     for ax, (title, front) in zip(axes.flat, fronts.items()):
         p = front.performance
@@ -212,7 +212,7 @@ def along_a_front(front):
     matplotlib.figure.Figure
     """
     p, m = front.performance, front.performance.total_mass_kg
-    figure, axes = _axes(1, 3, figsize=(9.6, 3.1))
+    figure, axes = panels(1, 3, figsize=(9.6, 3.1))
     columns = {"slope capability (deg)": p.slope_capability_deg, "range (km)": p.range_km,
                "chassis mass (kg)": front.designs.chassis_mass_kg}
     for k, (ax, (label, y)) in enumerate(zip(axes, columns.items())):
@@ -235,10 +235,10 @@ def generation_budget(histories, published):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(2, 2, figsize=(9.0, 5.6), sharex=True)
+    figure, axes = panels(2, 2, figsize=(9.0, 5.6), sharex=True)
     for ax, (title, lines) in zip(axes.flat, histories.items()):
-        _lines(ax, {label: np.arange(1, len(y) + 1) for label, y in lines.items()}, lines, "generation",
-               "normalised hypervolume", legend=False)
+        curves({label: np.arange(1, len(y) + 1) for label, y in lines.items()}, lines, "generation",
+               "normalised hypervolume", legend=False, axes=ax)
         ax.plot(*zip(*published[title].items()), "D", color=BLACK, markerfacecolor="white",
                 label="paper, mean of two")
         top = max(max(y) for y in (*lines.values(), list(published[title].values())))
@@ -264,7 +264,7 @@ def decoded_genes(gene, slope_deg, mass_kg):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(1, 2, figsize=(9.0, 3.2))
+    figure, axes = panels(1, 2, figsize=(9.0, 3.2))
     for ax, y, x_label, y_label in zip(axes, (slope_deg, mass_kg), ("grouser gene", "wheel gene"),
                                        ("slope capability (deg)", "total mass (kg)")):
         ax.plot(gene, y, ".", color=BLUE, markersize=2)
@@ -286,7 +286,7 @@ def searches(evaluations, histories):
     -------
     matplotlib.figure.Figure
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     for k, (label, y) in enumerate(histories.items()):
         ax.fill_between(evaluations, y.min(0), y.max(0), color=COLOURS[k], alpha=0.15, lw=0)
         ax.plot(evaluations, y.mean(0), color=COLOURS[k], linestyle=DASHES[k], marker=MARKERS[k],
@@ -296,12 +296,12 @@ def searches(evaluations, histories):
     return figure
 
 
-def seed_scatter(panels, published):
+def seed_scatter(content, published):
     """One number of each front, seed by seed, beside the paper's.
 
     Parameters
     ----------
-    panels : dict of str to dict of str to ndarray
+    content : dict of str to dict of str to ndarray
         By axis label and by title of the front: one value a seed. "(Wh)" makes the axis logarithmic.
     published : dict of str to dict of str to float
         The paper's value, where it gives one.
@@ -310,9 +310,9 @@ def seed_scatter(panels, published):
     -------
     matplotlib.figure.Figure
     """
-    titles = list(next(iter(panels.values())))
-    figure, axes = _axes(1, len(panels), figsize=(9.6, 2.8), sharey=True, squeeze=False)
-    for k, (ax, (label, rows)) in enumerate(zip(axes[0], panels.items())):
+    titles = list(next(iter(content.values())))
+    figure, axes = panels(1, len(content), figsize=(9.6, 2.8), sharey=True, squeeze=False)
+    for k, (ax, (label, rows)) in enumerate(zip(axes[0], content.items())):
         for y, title in enumerate(titles):
             ax.plot(rows[title], np.full(len(rows[title]), y), "o", color=BLUE, markerfacecolor="none",
                     markersize=7)
@@ -341,7 +341,7 @@ def hub_speed_plateau(speed_rad_s, range_km, front_range_km, limit_km):
     -------
     matplotlib.figure.Figure
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     ax.plot(speed_rad_s, range_km, color=BLUE, label="the longest-range design, hub replaced")
     ax.plot(list(front_range_km), list(front_range_km.values()), "s", color=ORANGE, markersize=8,
             label="longest range of a new front")

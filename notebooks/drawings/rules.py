@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 
-from .style import BLACK, BLUE, COLOURS, DASHES, GREY, MARKERS, ORANGE, _axes, _lines
+from rdk.figures import BLACK, BLUE, COLOURS, DASHES, GREY, MARKERS, ORANGE, panels, curves
 
 
 def variables_on_fronts(places):
@@ -22,7 +22,7 @@ def variables_on_fronts(places):
         A row a variable. Markers are medians, bars hold the middle 80 % of the front.
     """
     labels = list(next(iter(places.values())))
-    figure, ax = _axes(figsize=(7.4, 0.5 * len(labels) + 1))
+    figure, ax = panels(figsize=(7.4, 0.5 * len(labels) + 1))
     rows = np.arange(len(labels))
     ax.hlines(rows[:-1] + 0.5, 0, 1, color=GREY, lw=0.4)
     for i, (front, variables) in enumerate(places.items()):
@@ -38,34 +38,34 @@ def variables_on_fronts(places):
     return figure
 
 
-def capability_against_width(width_mm, panels):
+def capability_against_width(width_mm, content):
     """Slope capability against wheel width at equal mass, one panel a load, one line a shear modulus.
 
     Parameters
     ----------
     width_mm : ndarray
-    panels : dict of str to dict of str to ndarray
+    content : dict of str to dict of str to ndarray
         By panel title and by line label: slope capability in degrees.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(1, len(panels), figsize=(4.2 * len(panels), 3.6), sharey=True, squeeze=False)
-    for ax, (title, series) in zip(axes[0], panels.items()):
-        _lines(ax, width_mm, series, "wheel width (mm)", "slope capability (deg)", legend=False)
+    figure, axes = panels(1, len(content), figsize=(4.2 * len(content), 3.6), sharey=True, squeeze=False)
+    for ax, (title, series) in zip(axes[0], content.items()):
+        curves(width_mm, series, "wheel width (mm)", "slope capability (deg)", legend=False, axes=ax)
         ax.set_title(title, fontsize=10)
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4, fontsize=9,
                   frameon=False)
     return figure
 
 
-def front_points(panels, x_label, y_label, lines=None):
+def front_points(content, x_label, y_label, lines=None):
     """Designs of fronts as points, one panel a mission, one marker a case.
 
     Parameters
     ----------
-    panels : dict of str to dict of str to (ndarray, ndarray)
+    content : dict of str to dict of str to (ndarray, ndarray)
         By panel title and by case: x and y of each design.
     x_label, y_label : str
     lines : dict of str to float, optional
@@ -75,10 +75,10 @@ def front_points(panels, x_label, y_label, lines=None):
     -------
     matplotlib.figure.Figure
     """
-    columns = min(len(panels), 2)
-    rows = -(-len(panels) // columns)
-    figure, axes = _axes(rows, columns, figsize=(4.2 * columns, 2.9 * rows), squeeze=False, sharex=True)
-    for ax, (title, cases) in zip(axes.flat, panels.items()):
+    columns = min(len(content), 2)
+    rows = -(-len(content) // columns)
+    figure, axes = panels(rows, columns, figsize=(4.2 * columns, 2.9 * rows), squeeze=False, sharex=True)
+    for ax, (title, cases) in zip(axes.flat, content.items()):
         for i, (label, (x, y)) in enumerate(cases.items()):
             ax.plot(x, y, MARKERS[i], color=COLOURS[i % 4], markersize=4.5,
                     markerfacecolor="none" if i else None, label=label)
@@ -112,7 +112,7 @@ def battery_by_patience(statistics, published_wh):
         The dotted line is the search floor of 5 Wh.
     """
     names = list(dict.fromkeys(statistics.scenario))
-    figure, axes = _axes(1, len(names), figsize=(4.4 * len(names), 3.4), sharey=True, squeeze=False)
+    figure, axes = panels(1, len(names), figsize=(4.4 * len(names), 3.4), sharey=True, squeeze=False)
     for ax, name in zip(axes[0], names):
         for i, (seed, rows) in enumerate(statistics[statistics.scenario == name].groupby("seed")):
             ax.plot(rows.generations, rows.battery_median_wh, color=BLUE, marker=MARKERS[i % 7], lw=1, ms=5)
@@ -143,8 +143,8 @@ def battery_worth(capacity_wh, ranges_km, mass_kg):
     -------
     matplotlib.figure.Figure
     """
-    figure, (left, right) = _axes(1, 2, figsize=(8.4, 3.4))
-    _lines(left, capacity_wh, ranges_km, "battery capacity (Wh)", "range (km)")
+    figure, (left, right) = panels(1, 2, figsize=(8.4, 3.4))
+    curves(capacity_wh, ranges_km, "battery capacity (Wh)", "range (km)", axes=left)
     right.plot(capacity_wh, mass_kg, color=BLACK)
     right.set(xlabel="battery capacity (Wh)", ylabel="total mass (kg)")
     left.set(ylim=(0, None))
@@ -165,7 +165,7 @@ def rocker_bogie_share(statistics, rigid_limit_m):
     -------
     matplotlib.figure.Figure
     """
-    figure, ax = _axes(figsize=(6.4, 3.4))
+    figure, ax = panels(figsize=(6.4, 3.4))
     for i, (name, rows) in enumerate(statistics.groupby("scenario", sort=False)):
         rows = rows.sort_values("obstacle_height_m")
         ax.plot(100 * rows.obstacle_height_m, 100 * (1 - rows.four_wheels), color=COLOURS[i % 4],
@@ -192,7 +192,7 @@ def frontiers_by_scale(frontiers):
     matplotlib.figure.Figure
         Steps: the longest range of all designs up to that mass.
     """
-    figure, axes = _axes(2, 2, figsize=(8.6, 5.8), sharex=True)
+    figure, axes = panels(2, 2, figsize=(8.6, 5.8), sharex=True)
     scales = sorted(next(iter(frontiers.values())))
     inks = dict(zip(scales, (BLUE, BLUE, BLACK, ORANGE, ORANGE)))
     dashes = dict(zip(scales, (":", "--", "-", "--", ":")))
@@ -241,7 +241,7 @@ def sobol_bars(indices, labels=None, most=9):
     matplotlib.figure.Figure
     """
     metrics = list(dict.fromkeys(indices.metric))
-    figure, axes = _axes(1, len(metrics), figsize=(3.5 * len(metrics), 0.32 * most + 1.1), squeeze=False)
+    figure, axes = panels(1, len(metrics), figsize=(3.5 * len(metrics), 0.32 * most + 1.1), squeeze=False)
     for ax, metric in zip(axes[0], metrics):
         rows = indices[indices.metric == metric].nlargest(most, "total_order").iloc[::-1]
         y = np.arange(len(rows))
@@ -271,7 +271,7 @@ def pull_intervals(points):
         Bars are the intervals, ticks on them the nominal pull, markers the measurements.
     """
     names = list(dict.fromkeys(points.experiment))
-    figure, axes = _axes(1, len(names), figsize=(4.2 * len(names), 3.6), squeeze=False)
+    figure, axes = panels(1, len(names), figsize=(4.2 * len(names), 3.6), squeeze=False)
     for ax, name in zip(axes[0], names):
         for i, (wheel, rows) in enumerate(points[points.experiment == name].groupby("wheel")):
             x = rows.slip + 0.008 * (i - 0.5)
@@ -302,7 +302,7 @@ def family_rules(statistics, columns):
         Crosses on the left edge count the scenarios without any feasible design.
     """
     names = list(dict.fromkeys(statistics.family))
-    figure, axes = _axes(1, len(columns), figsize=(2.6 * len(columns) + 1.2, 2.8), sharey=True, squeeze=False)
+    figure, axes = panels(1, len(columns), figsize=(2.6 * len(columns) + 1.2, 2.8), sharey=True, squeeze=False)
     for ax, (column, label) in zip(axes[0], columns.items()):
         for y, name in enumerate(names):
             values = statistics[column][statistics.family == name]
@@ -334,7 +334,7 @@ def rediscovery_distances(found, baselines):
         feasible designs under the same mass ceiling, its bar down to the 5 % quantile.
     """
     table = found.merge(baselines, on="rover")
-    figure, ax = _axes(figsize=(7.6, 4))
+    figure, ax = panels(figsize=(7.6, 4))
     x = np.arange(len(table))
     for i, row in enumerate(table.itertuples()):
         ax.bar(i, row.distance, 0.5, color=BLUE if row.in_class else "none", edgecolor=BLUE,
@@ -370,7 +370,7 @@ def distance_by_patience(found, baselines):
         One panel a rover; the dashed line is chance.
     """
     names = list(dict.fromkeys(found.rover))
-    figure, axes = _axes(2, -(-len(names) // 2), figsize=(8.6, 4.6), sharex=True, sharey=True)
+    figure, axes = panels(2, -(-len(names) // 2), figsize=(8.6, 4.6), sharex=True, sharey=True)
     for ax, name in zip(axes.flat, names):
         rows = found[found.rover == name]
         ax.plot(rows.generations, rows.distance, color=BLUE, marker="o")
@@ -411,7 +411,7 @@ def ledger_verdicts(ledger):
     """
     words = ledger.agrees.map(lambda x: verdict(x)[1], na_action=None)
     sections = list(dict.fromkeys(ledger.section))
-    figure, ax = _axes(figsize=(7.4, 0.36 * len(sections) + 1))
+    figure, ax = panels(figsize=(7.4, 0.36 * len(sections) + 1))
     left = np.zeros(len(sections))
     styles = {"agrees": dict(color=BLUE), "differs": dict(color="white", edgecolor=ORANGE, hatch="///"),
               "reported": dict(color="white", edgecolor=GREY)}

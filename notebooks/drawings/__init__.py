@@ -3,13 +3,13 @@
 Every figure reads without colour (dashes and markers differ too) and names its units. Each function takes what the
 evaluator returned and computes nothing that a reader would want to check.
 """
-from .style import (  # noqa: F401
-    BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, STYLE, _axes, _lines)
+from rdk.figures import (  # noqa: F401
+    BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, STYLE, curves, panels)
 from .wheel import (  # noqa: F401
     load_and_pull, power_split, pressure_sinkage, quadrature_error, shear_mobilisation,
     sinkage_against_load, stress_against_angle, stress_on_rim, wheel_against_size, wheel_against_slip)
 from .mission import (  # noqa: F401
-    EVALUATION_FLOW, EVALUATION_RESULTS, _PARTS, demand_chances, growth, live, load_transfer,
+    EVALUATION_FLOW, EVALUATION_RESULTS, _PARTS, demand_chances, growth, load_transfer,
     mission_logs, pull_and_demand, rovers_on_missions, speed_limits, stall, step_convergence,
     sunk_wheel, system_diagram)
 from .measurements import (  # noqa: F401

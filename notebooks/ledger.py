@@ -1,21 +1,147 @@
-"""The ledger's rows that need searches, at the paper's budgets.
+"""The paper's ledger: every number that it reports beside ours, computed afresh.
 
-Each study behind the rows runs once in a ledger, when the first row asks for it. About 150 searches make the
-whole.
+Each study behind the rows runs once in a ledger, when the first row asks for it. About 150 searches make the whole.
 """
 from __future__ import annotations
 
 import dataclasses
+import functools
+import re
 import time
 from functools import cached_property
 
 import numpy as np
+import pandas as pd
 
-from .. import catalog, contact, rediscovery, rules
-from ..mission import evaluate
-from ..sampling import random_designs
-from ..tradespace import pareto_front, study
-from .rows import ledger_row
+from rdk import _contact as contact
+from rdk import catalog, rediscovery, rules
+from rdk.mission import evaluate
+from rdk.sampling import random_designs
+from rdk.tradespace import fronts, pareto_front
+from rdk.validation import (
+    EXPERIMENTS, flown_rovers, load_transfer, published_masses, published_masses_summary, pull_shift, single_wheel,
+    single_wheel_summary)
+
+
+ROWS = {}
+"""How each row is computed, by its id."""
+
+
+def ledger_row(*ids):
+    """Register a function of the evidence as the computation of ledger rows; with several ids it also gets the id."""
+    def register(function):
+        for name in ids:
+            ROWS[name] = functools.partial(function, id=name) if len(ids) > 1 else function
+        return function
+    return register
+
+
+class Evidence:
+    """The tables behind the ledger, each computed once when first needed."""
+
+    def __init__(self, searches=None):
+        self.searches = searches
+
+    @functools.cached_property
+    def single_wheel(self):
+        return single_wheel_summary().set_index(["experiment", "quantity"])
+
+    @functools.cached_property
+    def masses(self):
+        return published_masses()
+
+    @functools.cached_property
+    def mass_summary(self):
+        return published_masses_summary(self.masses).set_index("rovers_included").loc["in class"]
+
+    @functools.cached_property
+    def flown(self):
+        return flown_rovers().set_index("rover")
+
+
+_ROVERS = {"tenacious": "Tenacious", "cadre": "CADRE-unit", "rashid": "Rashid-1", "sojourner": "Sojourner",
+           "pragyan": "Pragyan", "yutu2": "Yutu-2", "marsokhod": "MARSOKHOD"}
+
+
+@ledger_row("dp_ding", "dp_hurrell", "dp_wang", "z_ding", "z_hurrell", "z_wang")
+def _wheel_median(evidence, id):
+    quantity, source = id.split("_")
+    row = evidence.single_wheel.loc[EXPERIMENTS[source], {"dp": "drawbar_pull", "z": "sinkage"}[quantity]]
+    note = ""
+    if quantity == "z" and row.over_predicted * 2 >= row.points:
+        note = f"the sign matters: the kernel sinks too far at {row.over_predicted} of {row.points} points"
+    return row.median_abs_error_pct, note
+
+
+@ledger_row("z_kls1_mm")
+def _kls1_sinkage(evidence):
+    solved = single_wheel().query("soil == 'kls-1'").model_sinkage_mm
+    return solved.median(), f"median over the points; they span {solved.min():.1f} to {solved.max():.1f} mm"
+
+
+@ledger_row(*(f"mass_{name}" for name in _ROVERS))
+def _mass(evidence, id):
+    return evidence.masses.set_index("rover").predicted_mass_kg[_ROVERS[id.removeprefix("mass_")]]
+
+
+@ledger_row("mass_median", "mass_mean")
+def _mass_error(evidence, id):
+    return evidence.mass_summary[id.removeprefix("mass_") + "_abs_error_pct"]
+
+
+@ledger_row("solar_pragyan_w")
+def _solar_pragyan(evidence):
+    return evidence.flown.clean_peak_w["Pragyan"], "with the 0.98 of a clean array"
+
+
+@ledger_row("solar_pragyan_band_w")
+def _solar_pragyan_band(evidence):
+    row = evidence.flown.loc["Pragyan"]
+    return (row.clean_peak_low_w, row.clean_peak_high_w), "with the 0.98 of a clean array"
+
+
+@ledger_row("solar_yutu2_w")
+def _solar_yutu2(evidence):
+    row = evidence.flown.loc["Yutu-2"]
+    return row.peak_w, f"without the 0.98 that Pragyan's figure has; with it {row.clean_peak_w:.1f} W"
+
+
+@ledger_row("derate_yutu2")
+def _derate_yutu2(evidence):
+    row = evidence.flown.loc["Yutu-2"]
+    with_loss = row.published_peak_w / row.clean_peak_w
+    return row.implied_derate, f"{with_loss:.3f} against an array that counts the 0.98, as Pragyan's does"
+
+
+@ledger_row("night_pragyan", "night_yutu2")
+def _night(evidence, id):
+    return bool(evidence.flown.survives[_ROVERS[id.removeprefix("night_")]])
+
+
+@ledger_row("range_pragyan_m", "range_yutu2_m")
+def _range(evidence, id):
+    row = evidence.flown.loc[_ROVERS[id.split("_")[1]]]
+    return row.range_m, f"the scenario's traverse limit; without it the envelope is {row.unlimited_range_km:.1f} km"
+
+
+@ledger_row("shear_shift_15", "shear_shift_30")
+def _shear_shift(evidence, id):
+    change = int(id[-2:]) / 100
+    down, up = pull_shift([1 - change, 1 + change]).median_shift_pct
+    return (down + up) / 2, (f"mean of the two sides: {down:.1f} % at {1 - change:.2f}, {up:.1f} % at "
+                             f"{1 + change:.2f}; the paper's figure is the upper side")
+
+
+@ledger_row("load_transfer_pct")
+def _load_transfer(evidence):
+    canonical = evidence.searches.canonical.values()
+    largest = max(abs(load_transfer(front.designs, front.scenario)).max() for front in canonical)
+    tenacious = load_transfer(catalog.rover("Tenacious"), catalog.scenario("highland_slope_capability"))
+    return largest, (f"largest change over the four fronts; where the pull is nearly used up it is far more: "
+                     f"{tenacious:.0f} % for Tenacious on apollo-loose")
+
+
+# ---- searches -------------------------------------------------------------------------------------------------
 
 TRAVERSE = ("equatorial_mare_traverse", "polar_prospecting", "crater_rim_survey")
 """The scenarios whose fronts trade range, mass and slope capability."""
@@ -46,11 +172,11 @@ class Searches:
 
     def _study(self, **options):
         """Fronts of the four canonical scenarios, each with its own seed."""
-        fronts = {}
+        found = {}
         for scenario in map(catalog.scenario, catalog.scenario_names("canonical")):
-            shifted = dataclasses.replace(scenario.study, seed=scenario.study.seed + self.seed_offset)
-            fronts |= study([dataclasses.replace(scenario, study=shifted)], executor=self.executor, **options)
-        return fronts
+            shifted = dataclasses.replace(scenario.problem, seed=scenario.problem.seed + self.seed_offset)
+            found |= fronts([dataclasses.replace(scenario, problem=shifted)], executor=self.executor, **options)
+        return found
 
     @cached_property
     def canonical(self):
@@ -74,17 +200,17 @@ class Searches:
 
     @cached_property
     def crossover(self):
-        fronts = self._study(obstacle_heights_m=[height for height in rules.OBSTACLE_HEIGHTS_M if height > 0])
-        return rules.crossover(rules.front_statistics([*self.canonical.values(), *fronts.values()]))
+        cases = self._study(obstacle_heights_m=[height for height in rules.OBSTACLE_HEIGHTS_M if height > 0])
+        return rules.crossover(rules.front_statistics([*self.canonical.values(), *cases.values()]))
 
     @cached_property
     def budget(self):
         """Fronts of 90 generations: their statistics, and the hypervolume at 30, 60 and 90; a row a seed."""
         scenarios = [catalog.scenario(name) for name in catalog.scenario_names("canonical")]
-        fronts = study(scenarios, seeds=[seed + self.seed_offset for seed in BUDGET_SEEDS],
+        cases = fronts(scenarios, seeds=[seed + self.seed_offset for seed in BUDGET_SEEDS],
                        generations=max(BUDGET_GENERATIONS), executor=self.executor)
-        found = rules.front_statistics(fronts.values())
-        return found.assign(**{str(g): [front.history[g - 1] for front in fronts.values()]
+        found = rules.front_statistics(cases.values())
+        return found.assign(**{str(g): [front.history[g - 1] for front in cases.values()]
                                for g in BUDGET_GENERATIONS})
 
     @cached_property
@@ -156,7 +282,7 @@ def _highland_slope(evidence):
 @ledger_row("highland_slope_ceiling_deg")
 def _slope_ceiling(evidence):
     scenario = catalog.scenario(SHORT["highland"])
-    front = pareto_front(scenario, seed=scenario.study.seed + evidence.searches.seed_offset, constraints=(),
+    front = pareto_front(scenario, seed=scenario.problem.seed + evidence.searches.seed_offset, constraints=(),
                          objectives={"slope_capability_deg": "max", "total_mass_kg": "min"})
     return front.performance.slope_capability_deg.max(), "from a search for slope capability and mass alone"
 
@@ -244,7 +370,7 @@ def _four_wheels_scaled(evidence):
     if share[worst] == 1:
         return 100.0, "every front that is not empty"
     front = evidence.searches.scaled[worst]
-    rival = pareto_front(front.scenario, seed=front.study.seed, model=front.model,
+    rival = pareto_front(front.scenario, seed=front.problem.seed, model=front.model,
                          bounds={"wheel_count": (4, 4)})
     beaten = rules.dominated(front, [rival]).mean()
     return 100 * share[worst], (
@@ -341,3 +467,111 @@ def stress_integrals(designs, scenario):
     finally:
         contact.forces = forces
     return count / len(designs)
+
+
+# ---- the table ------------------------------------------------------------------------------------------------
+
+_BOUND = re.compile(r"(>=|<=|<|>)?\s*(-?[\d.]+?)(?:\.\.(-?[\d.]+))?$")
+_COMPARE = {">=": np.greater_equal, "<=": np.less_equal, "<": np.less, ">": np.greater}
+
+
+def accepts(accept, value):
+    """Whether a value is inside a band of `paper_targets.csv`.
+
+    Parameters
+    ----------
+    accept : str
+        "low..high"; a bound such as "<= 0.20"; a number or a word, to be met exactly; several parts joined by ";",
+        each starting with "max" or "min", for the largest and smallest value; "report ours ...", which nothing can
+        fail. What follows " or " is not a bound.
+    value : float, bool, str or sequence of float
+        All of a sequence must be inside, unless a part says max or min.
+
+    Returns
+    -------
+    bool or None
+        None where nothing is asked but to report.
+
+    Raises
+    ------
+    ValueError
+        If `accept` cannot be read.
+
+    Examples
+    --------
+    >>> accepts("26.5..27.7", 27.1), accepts("max 80; min < 8", (0.9, 80.0)), accepts("False", True)
+    (True, True, False)
+    """
+    text = accept.partition(" or ")[0].strip()
+    if text.startswith("report ours"):
+        return None
+    if ";" in text:
+        return all(accepts(part, value) for part in text.split(";"))
+    if text in ("True", "False") or isinstance(value, (bool, np.bool_)):
+        return isinstance(value, (bool, np.bool_)) and str(bool(value)) == text
+    if text.isalpha() or isinstance(value, str):
+        return value == text
+    values = np.asarray(value, float)
+    which, _, rest = text.partition(" ")
+    if which in ("max", "min"):
+        text, values = rest, getattr(values, which)()
+    bound = _BOUND.match(text)
+    if not bound or (bound[1] and bound[3]):
+        raise ValueError(f"accept must be a range, a bound or a word; got {accept!r}")
+    low = float(bound[2])
+    if bound[3]:
+        inside = (values >= low) & (values <= float(bound[3]))
+    elif bound[1]:
+        inside = _COMPARE[bound[1]](values, low)
+    else:
+        inside = np.isclose(values, low, rtol=1e-6, atol=0)
+    return bool(np.all(inside))
+
+
+def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None, sections=None):
+    """Every number that the paper reports beside ours, computed afresh.
+
+    Parameters
+    ----------
+    kinds : sequence of str
+        Which rows of `paper_targets.csv`: "deterministic", "stochastic" (numbers that a search's seed moves) or
+        "cost" (timings: they differ from run to run).
+    searches : Searches, optional
+        The studies behind the stochastic rows: with an executor, with other seeds, or computed already.
+    sections : sequence of str, optional
+        Only rows of these sections of the paper.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a number: id, section, quantity, paper (as printed), ours (a number, flag, word or (low, high)), agrees
+        (NA where the row asks only for our value), why (a sentence where they disagree, or where agreement hides
+        something).
+
+    Raises
+    ------
+    ValueError
+        If a kind or a section is unknown.
+    NotImplementedError
+        If a row has no computation.
+    """
+    targets = catalog.table("paper_targets.csv")
+    known = list(dict.fromkeys(targets.kind))
+    for kind in kinds:
+        if kind not in known:
+            raise ValueError(f"kinds must be among {', '.join(known)}; got {kind!r}")
+    known = list(dict.fromkeys(targets.paper_section))
+    for section in sections or ():
+        if section not in known:
+            raise ValueError(f"sections must be among {', '.join(known)}; got {section!r}")
+    targets = targets[targets.kind.isin(list(kinds)) & targets.paper_section.isin(list(sections or known))]
+    missing = [name for name in targets.id if name not in ROWS]
+    if missing:
+        raise NotImplementedError("no computation for the ledger rows " + ", ".join(missing))
+    evidence, rows = Evidence(Searches() if searches is None else searches), []
+    for target in targets.itertuples():
+        found = ROWS[target.id](evidence)
+        ours, why = found if isinstance(found, tuple) and isinstance(found[-1], str) else (found, "")
+        rows.append(dict(id=target.id, section=target.paper_section, quantity=target.quantity,
+                         paper=str(target.paper_value), ours=ours, agrees=accepts(str(target.accept), ours), why=why))
+    return pd.DataFrame(rows).astype({"agrees": "boolean", "ours": object})

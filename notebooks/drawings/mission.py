@@ -4,7 +4,7 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .style import BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, _axes
+from rdk.figures import BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, panels
 
 
 EVALUATION_FLOW = (
@@ -39,7 +39,7 @@ def system_diagram():
     matplotlib.figure.Figure
         Inputs on the left, the parts of `evaluate` in the frame, results on the right, what uses them below.
     """
-    figure, ax = _axes(figsize=(9.4, 5.6))
+    figure, ax = panels(figsize=(9.4, 5.6))
     ax.set(xlim=(-0.4, 10.4), ylim=(-0.75, 6.65))
     ax.axis("off")
 
@@ -75,7 +75,7 @@ def system_diagram():
     results = [name for names in EVALUATION_RESULTS.values() for name in names]
     box(8.2, 2.35, 2.15, 3.7, "Performance", "\n".join(results) + "\nstalled, feasible ...", BLUE)
     arrow((7.65, 4.2), (8.2, 4.2))
-    box(2.45, -0.7, 5.2, 0.95, "tradespace, validation, plots, explorer",
+    box(2.45, -0.7, 5.2, 0.95, "tradespace, validation, explorer",
         "many designs at once, comparisons, pictures, sliders", GREEN)
     arrow((9.27, 2.35), (9.27, -0.22), (7.65, -0.22))
     arrow((2.45, -0.22), (-0.25, -0.22), (-0.25, 5.42), (0.05, 5.42),
@@ -83,14 +83,14 @@ def system_diagram():
     return figure
 
 
-def growth(mass_kg, panels):
+def growth(mass_kg, content):
     """What grows when a rover gains mass: one small panel a quantity.
 
     Parameters
     ----------
     mass_kg : ndarray
         Total mass.
-    panels : dict
+    content : dict
         Axis label with unit -> values at each mass. NaN leaves a gap.
 
     Returns
@@ -98,8 +98,8 @@ def growth(mass_kg, panels):
     matplotlib.figure.Figure
         A panel for each quantity, and in grey what plain proportion to the mass would give.
     """
-    figure, axes = _axes(1, len(panels), figsize=(2.5 * len(panels), 2.7), squeeze=False)
-    for ax, (label, values), colour, marker in zip(axes.flat, panels.items(), COLOURS, MARKERS):
+    figure, axes = panels(1, len(content), figsize=(2.5 * len(content), 2.7), squeeze=False)
+    for ax, (label, values), colour, marker in zip(axes.flat, content.items(), COLOURS, MARKERS):
         ax.plot(mass_kg, values, color=colour, marker=marker, markersize=4)
         ax.plot(mass_kg, values[0] * mass_kg / mass_kg[0], color=GREY, linestyle=":", lw=1.2)
         ax.set(xlabel="total mass (kg)", title=label, ylim=(0, None))
@@ -125,7 +125,7 @@ def rovers_on_missions(range_km, limit_km, verdicts, rovers, missions):
     matplotlib.figure.Figure
         One panel a mission; the dashed line is the mission's traverse limit.
     """
-    figure, axes = _axes(1, len(missions), figsize=(2.5 * len(missions), 3.4), sharey=True, squeeze=False)
+    figure, axes = panels(1, len(missions), figsize=(2.5 * len(missions), 3.4), sharey=True, squeeze=False)
     for column, (ax, mission, limit) in enumerate(zip(axes.flat, missions, limit_km)):
         bars = ax.barh(range(len(rovers)), range_km[:, column], height=0.62, color=BLUE)
         ax.axvline(limit, color=BLACK, linestyle="--", lw=1.2)
@@ -191,65 +191,6 @@ def sunk_wheel(design, performance, slope_deg=0.0, figure=None):
     return figure
 
 
-def live(draw, **sliders):
-    """A picture with sliders that is drawn anew when one moves; it runs without a browser too.
-
-    Parameters
-    ----------
-    draw : callable
-        Takes an empty matplotlib Figure and one number a slider, by name; draws, and returns a sentence
-        that says what the picture shows. It may run in several threads, one at a time: no pyplot in it.
-    **sliders : tuple
-        Name -> (low, high, step, start, label with unit).
-
-    Returns
-    -------
-    ipywidgets.HBox
-        Its `sliders` is a dictionary of the sliders by name; `picture` the HTML image with the sentence as
-        its alternative text. Where there are no widgets the picture stands alone.
-    """
-    import base64
-    import html
-    import io
-    import threading
-
-    import ipywidgets as widgets
-    from matplotlib.figure import Figure
-
-    class LivePicture(widgets.HBox):
-        def _repr_mimebundle_(self, **options):          # a viewer without widgets shows the picture instead
-            bundle = super()._repr_mimebundle_(**options)
-            return {**bundle, "text/plain": self.sentence, "image/png": self.png}
-
-    picture, said = widgets.HTML(), widgets.HTML()
-    rows, controls, lock = [], {}, threading.Lock()
-    for name, (low, high, step, start, label) in sliders.items():
-        limits = dict(min=low, max=high, step=step, value=start, description=label,
-                      style={"description_width": "110px"}, layout=widgets.Layout(width="310px"))
-        controls[name] = widgets.FloatSlider(readout=False, **limits)
-        number = widgets.BoundedFloatText(**limits)      # for keyboards and screen readers
-        widgets.link((controls[name], "value"), (number, "value"))
-        rows += [controls[name], number]
-    panel = widgets.VBox([*rows, said], layout=widgets.Layout(flex="0 0 330px"))
-    box = LivePicture([panel, picture])
-    box.sliders, box.picture = controls, picture
-
-    def redraw(change=None):
-        with lock:                                       # JupyterLab may call from several threads
-            figure, file = Figure(figsize=(5.2, 3.6)), io.BytesIO()
-            box.sentence = draw(figure, **{name: control.value for name, control in controls.items()})
-            figure.savefig(file, format="png", dpi=100)
-            box.png, text = base64.b64encode(file.getvalue()).decode(), html.escape(box.sentence)
-            picture.value = (f'<img width="520" height="360" alt="{text}" '
-                             f'src="data:image/png;base64,{box.png}">')
-            said.value = f'<div role="status">{text}</div>'
-
-    for control in controls.values():
-        control.observe(redraw, "value")
-    redraw()
-    return box
-
-
 def pull_and_demand(slip, pulls, demands, roots):
     """Drawbar pull against slip, the pull that each slope demands, and where the two meet.
 
@@ -264,7 +205,7 @@ def pull_and_demand(slip, pulls, demands, roots):
     matplotlib.figure.Figure
         A curve and a level line a label, with a marker where they cross.
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     for (label, pull), colour, dash, marker in zip(pulls.items(), COLOURS, DASHES, MARKERS):
         ax.plot(slip, pull, color=colour, linestyle=dash, label=label)
         ax.axhline(demands[label], color=colour, linestyle=dash, lw=1)
@@ -291,7 +232,7 @@ def stall(slope_deg, slip, torque_nm, peak_torque_nm, stalled, labels):
     matplotlib.figure.Figure
         Above slip, below the share of the hub's peak torque that the slope takes; a cross at the first stall.
     """
-    figure, axes = _axes(2, 1, figsize=(6.4, 5), sharex=True)
+    figure, axes = panels(2, 1, figsize=(6.4, 5), sharex=True)
     share = torque_nm / np.asarray(peak_torque_nm)[:, None]
     for row, (label, colour, dash) in enumerate(zip(labels, COLOURS, DASHES)):
         last = int(np.argmax(stalled[row])) if stalled[row].any() else len(slope_deg) - 1
@@ -320,7 +261,7 @@ def speed_limits(slope_deg, energy_speed_m_s, hub_speed_m_s, cruise_speed_m_s):
     matplotlib.figure.Figure
         Speeds on a logarithmic axis, from a stroll to a car.
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     ax.semilogy(slope_deg, energy_speed_m_s, color=ORANGE, linestyle="--",
                 label="energy balance (the paper's text)")
     ax.semilogy(slope_deg, hub_speed_m_s, color=GREEN, linestyle="-.", label="hub at 5 rad/s")
@@ -348,7 +289,7 @@ def mission_logs(logs, soc_floor=0.15):
     matplotlib.figure.Figure
         Grey bands are the hours in which driving is throttled to what the sun carries.
     """
-    figure, axes = _axes(3, len(logs), figsize=(4.6 * len(logs), 6.2), sharex="col", squeeze=False)
+    figure, axes = panels(3, len(logs), figsize=(4.6 * len(logs), 6.2), sharex="col", squeeze=False)
     for column, (title, log) in zip(axes.T, logs.items()):
         days = log.time_h / 24
         for ax in column:
@@ -381,7 +322,7 @@ def step_convergence(step_h, errors):
     matplotlib.figure.Figure
         The dashed grey line halves when the step halves.
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     for (label, error), colour, marker in zip(errors.items(), COLOURS, MARKERS):
         ax.loglog(step_h, error, color=colour, marker=marker, label=label)
     first = max(error[0] for error in errors.values())
@@ -409,7 +350,7 @@ def load_transfer(ratio, changes, band_pct=2.0):
     matplotlib.figure.Figure
         Curves inside the band agree with the paper.
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     ax.axhspan(-band_pct, band_pct, color=GREY, alpha=0.2, lw=0)
     for (label, change), colour, dash, marker in zip(changes.items(), COLOURS, DASHES, MARKERS):
         ax.plot(ratio, change, color=colour, linestyle=dash, marker=marker, markevery=4, markersize=5,
@@ -435,7 +376,7 @@ def demand_chances(mass_kg, shares, wanted=0.9):
     -------
     matplotlib.figure.Figure
     """
-    figure, ax = _axes(figsize=(6.8, 4.0))
+    figure, ax = panels(figsize=(6.8, 4.0))
     for i, (label, share) in enumerate(shares.items()):
         ax.plot(mass_kg, 100 * share, color=COLOURS[i % 4], linestyle=DASHES[i % 4], marker=MARKERS[i], markersize=5,
                 label=label)

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .style import BLACK, BLUE, COLOURS, DASHES, GREY, MARKERS, ORANGE, _axes, _lines
+from rdk.figures import BLACK, BLUE, COLOURS, DASHES, GREY, MARKERS, ORANGE, panels, curves
 
 
 def pressure_sinkage(depth_mm, pressure_kpa):
@@ -18,8 +18,8 @@ def pressure_sinkage(depth_mm, pressure_kpa):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes()
-    _lines(axes, depth_mm, pressure_kpa, "sinkage z (mm)", "pressure p (kPa)")
+    figure, axes = panels()
+    curves(depth_mm, pressure_kpa, "sinkage z (mm)", "pressure p (kPa)", axes=axes)
     return figure
 
 
@@ -36,8 +36,8 @@ def shear_mobilisation(displacement_mm, shear_kpa, shear_modulus_mm):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes()
-    _lines(axes, displacement_mm, shear_kpa, "shear displacement j (mm)", "shear stress τ (kPa)")
+    figure, axes = panels()
+    curves(displacement_mm, shear_kpa, "shear displacement j (mm)", "shear stress τ (kPa)", axes=axes)
     axes.axvline(shear_modulus_mm, color=GREY, linewidth=1)
     axes.annotate("K", (shear_modulus_mm, 0.02), xycoords=("data", "axes fraction"), xytext=(4, 0),
                   textcoords="offset points", color=GREY)
@@ -56,9 +56,9 @@ def stress_against_angle(angle_deg, normal_kpa, shear_kpa, transition_deg):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes()
-    _lines(axes, angle_deg, {"normal stress σ": normal_kpa, "shear stress τ": shear_kpa},
-           "angle θ from the downward vertical (deg)", "stress (kPa)")
+    figure, axes = panels()
+    curves(angle_deg, {"normal stress σ": normal_kpa, "shear stress τ": shear_kpa},
+           "angle θ from the downward vertical (deg)", "stress (kPa)", axes=axes)
     axes.axvline(transition_deg, color=GREY, linewidth=1)
     axes.annotate("$θ_m$", (transition_deg, 0.02), xycoords=("data", "axes fraction"), xytext=(4, 0),
                   textcoords="offset points", color=GREY)
@@ -88,7 +88,7 @@ def stress_on_rim(radius_m, cases, arrows=11):
     highest = max(np.max(abs(np.array(stress[:2]))) for _, stress in cases.values()) / 1000
     widest = max(angle[-1] for angle, _ in cases.values())
     scale = 0.8 * r * np.sin(widest) / highest                           # mm of drawing a kPa
-    figure, all_axes = _axes(1, len(cases), figsize=(3.2 * len(cases), 3.3), squeeze=False, sharey=True)
+    figure, all_axes = panels(1, len(cases), figsize=(3.2 * len(cases), 3.3), squeeze=False, sharey=True)
 
     def at(radius, angle):                                               # the hub is the origin
         return radius * np.sin(angle), -radius * np.cos(angle)
@@ -142,9 +142,9 @@ def quadrature_error(points, errors, marked_points):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes()
-    _lines(axes, points, {label: np.maximum(error, 1e-16) for label, error in errors.items()},
-           "evaluations of the stress", "relative error", legend=False)
+    figure, axes = panels()
+    curves(points, {label: np.maximum(error, 1e-16) for label, error in errors.items()},
+           "evaluations of the stress", "relative error", legend=False, axes=axes)
     for line, marker in zip(axes.get_lines(), MARKERS):
         line.set(marker=marker, markersize=5)
     axes.legend(frameon=False, fontsize=9)
@@ -165,11 +165,11 @@ def wheel_against_slip(slip, cases):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(1, 3, figsize=(9.6, 3.4))
+    figure, axes = panels(1, 3, figsize=(9.6, 3.4))
     for panel, field, factor, y_label in zip(axes, ("drawbar_pull_n", "torque_nm", "sinkage_m"), (1, 1, 1000),
                                              ("drawbar pull (N)", "torque (N m)", "sinkage (mm)")):
-        _lines(panel, slip, {label: factor * getattr(f, field) for label, f in cases.items()}, "slip s",
-               y_label, legend=panel is axes[0])
+        curves(slip, {label: factor * getattr(f, field) for label, f in cases.items()}, "slip s",
+               y_label, legend=panel is axes[0], axes=panel)
         panel.axhline(0, color=GREY, linewidth=0.8)
     axes[2].set_ylim(bottom=0)
     return figure
@@ -190,9 +190,9 @@ def wheel_against_size(size_mm, cases, fixed_label):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(1, 2, figsize=(8.4, 3.4))
+    figure, axes = panels(1, 2, figsize=(8.4, 3.4))
     for panel, i, y_label in zip(axes, (0, 1), ("drawbar pull over load", "sinkage (mm)")):
-        _lines(panel, size_mm, {label: case[i] for label, case in cases.items()}, "size (mm)", y_label)
+        curves(size_mm, {label: case[i] for label, case in cases.items()}, "size (mm)", y_label, axes=panel)
     figure.suptitle(fixed_label, fontsize=10)
     return figure
 
@@ -212,9 +212,9 @@ def power_split(slip, parts_w, total_w):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes()
-    _lines(axes, slip, {**parts_w, "torque × speed − pull × speed": total_w}, "slip s",
-           "power into the soil (W)")
+    figure, axes = panels()
+    curves(slip, {**parts_w, "torque × speed − pull × speed": total_w}, "slip s",
+           "power into the soil (W)", axes=axes)
     axes.axhline(0, color=GREY, linewidth=0.8)
     return figure
 
@@ -231,8 +231,8 @@ def sinkage_against_load(load_n, sinkage_mm):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes()
-    _lines(axes, load_n, sinkage_mm, "load on the wheel (N)", "sinkage (mm)")
+    figure, axes = panels()
+    curves(load_n, sinkage_mm, "load on the wheel (N)", "sinkage (mm)", axes=axes)
     axes.set(xscale="log", yscale="log")
     return figure
 
@@ -256,7 +256,7 @@ def load_and_pull(cases, weight_n, slope_deg):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(figsize=(5.6, 4.2))
+    figure, axes = panels(figsize=(5.6, 4.2))
     for i, (label, (load, pull)) in enumerate(cases.items()):
         angle = np.radians(slope_deg[label])
         axes.plot(load, pull, color=COLOURS[i], linestyle=DASHES[i], linewidth=1.8, label=label)

@@ -6,12 +6,13 @@ from functools import cache
 
 import numpy as np
 
-from .. import catalog, validation
-from ..design import Design
-from ..mission import evaluate
-from ..rediscovery import unit_cube
-from ..sampling import intervals
-from ..tradespace import pareto_front
+from rdk import catalog, validation
+import ledger
+from rdk.design import Design
+from rdk.mission import evaluate
+from rdk.rediscovery import unit_cube
+from rdk.sampling import intervals
+from rdk.tradespace import pareto_front
 from .judging import exercise
 from .shared import _mare, _rashid
 
@@ -155,7 +156,7 @@ exercise(
 
 exercise(
     "11.3", lambda: all(
-        validation.accepts(catalog.table("paper_targets.csv").set_index("id").accept[row], pair)
+        ledger.accepts(catalog.table("paper_targets.csv").set_index("id").accept[row], pair)
         for row, pair in (("front_mare_range_km", (0.2, 80.0)), ("front_mare_mass_kg", (9.9, 61.0)))),
     "Read both bands: what do they ask of the smallest value, what of the largest, and what not at all?")
 
@@ -164,7 +165,7 @@ exercise(
 def _polar_batteries():
     """Median battery of the polar front at three shifts of its seed."""
     polar = catalog.scenario("polar_prospecting")
-    return [float(np.median(pareto_front(polar, seed=polar.study.seed + shift).designs.battery_capacity_wh))
+    return [float(np.median(pareto_front(polar, seed=polar.problem.seed + shift).designs.battery_capacity_wh))
             for shift in (0, 100, 200)]
 
 

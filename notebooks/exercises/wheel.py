@@ -8,8 +8,8 @@ import numpy as np
 from scipy.integrate import trapezoid
 from scipy.optimize import least_squares
 
-from .. import catalog, terramechanics, validation
-from ..mission import evaluate
+from rdk import catalog, terramechanics, validation
+from rdk.mission import evaluate
 from .judging import exercise
 from .shared import _bus_factor, _first, _mare, _rashid
 

@@ -20,12 +20,13 @@ import numpy as np
 from IPython.display import Image
 from traitlets import TraitError
 
-from . import catalog, explain, keep, pictures
+from .. import catalog, explain, keep
+from . import pictures
 from .controls import GOALS, MISSION_SPACE, OWN, START, VIEWS, Controls, Refresher, message, show
-from .design import DESIGN_SPACE, Design, Model, Scenario, Study
-from .mission import evaluate
-from .sampling import attribution, intervals, replaced, sweep, uncertain_inputs
-from .tradespace import Front, search
+from ..design import DESIGN_SPACE, Design, Model, Scenario, Problem
+from ..mission import evaluate
+from ..sampling import attribution, intervals, replaced, sweep, uncertain_inputs
+from ..tradespace import Front, search
 
 READOUTS = (("range_km", "km", 2), ("total_mass_kg", "kg", 2), ("slope_capability_deg", "deg", 1),
             ("wheel_torque_nm", "N m", 2), ("energy_balance_pct", "%", 0), ("obstacle_capability_m", "m", 3),
@@ -107,7 +108,7 @@ class Explorer:
         """The Scenario that the inputs show; the panel faces the noon sun."""
         values = {name: self.inputs[name].value for name in MISSION_SPACE}
         name = self.inputs["mission"].value
-        return Scenario(name=name, soil=self._soils[self.inputs["soil"].value], study=catalog.study(name),
+        return Scenario(name=name, soil=self._soils[self.inputs["soil"].value], problem=catalog.problem(name),
                         panel_azimuth_deg=0.0 if values["latitude_deg"] < 0 else 180.0, **values)
 
     def set(self, **values):
@@ -167,7 +168,7 @@ class Explorer:
                     menu.value = OWN                     # the name of a catalogued mission, but other values
                 if self.scenario.panel_azimuth_deg != mission.panel_azimuth_deg:
                     words.append(f"panel turned from {mission.panel_azimuth_deg:g} deg to the noon sun")
-                self._pose(catalog.study(menu.value))
+                self._pose(catalog.problem(menu.value))
             if design is not None:
                 same = (name for name in catalog.rover_names() if catalog.rover(name) == self.design)
                 self.inputs["rover"].value = next(same, OWN)
@@ -497,7 +498,7 @@ class Explorer:
             note += f": {len(design)} designs, listed under the inputs 'search'; the first is shown"
             where = _plain(self.scenario if mission is None else mission)
             design = Design(**{n: np.clip(getattr(design, n), v.low, v.high) for n, v in DESIGN_SPACE.items()})
-            self._searched, self._recipe = Front(design, evaluate(design, where, self.model), where, self.model, Study()), None
+            self._searched, self._recipe = Front(design, evaluate(design, where, self.model), where, self.model, Problem()), None
             self._offer(self._searched)
             design = design[0]
         self._put(design, mission, note)
@@ -525,7 +526,7 @@ def live_front(scenario, start=None, model=Model()):
 
 def _plain(scenario):
     """The mission without its study: a search keeps the range limit that the slider shows."""
-    return dataclasses.replace(scenario, study=Study())
+    return dataclasses.replace(scenario, problem=Problem())
 
 
 def _words(value, digits, unit=""):

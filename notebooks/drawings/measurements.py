@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .style import BLACK, BLUE, COLOURS, DASHES, GREY, MARKERS, ORANGE, _axes, _lines
+from rdk.figures import BLACK, BLUE, COLOURS, DASHES, GREY, MARKERS, ORANGE, panels, curves
 
 
 _TESTS = {"ding-2011": "Ding 2011", "hurrell-2025": "Hurrell 2025", "wang-han-2016": "Wang & Han 2016"}
@@ -30,7 +30,7 @@ def single_wheel_comparison(points, curves):
     matplotlib.figure.Figure
     """
     titles = _test_titles(points)
-    figure, grid = _axes(3, len(titles), figsize=(3.2 * len(titles), 8.2), sharex=True, squeeze=False)
+    figure, grid = panels(3, len(titles), figsize=(3.2 * len(titles), 8.2), sharex=True, squeeze=False)
     quantities = {"drawbar_pull_n": "drawbar pull (N)", "sinkage_mm": "sinkage (mm)",
                   "torque_nm": "torque (N m)"}
     for column, (test, title) in enumerate(titles.items()):
@@ -69,7 +69,7 @@ def single_wheel_errors(points):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(1, 2, figsize=(9, 3.6))
+    figure, axes = panels(1, 2, figsize=(9, 3.6))
     for i, (test, title) in enumerate(_test_titles(points).items()):
         colour, marker = COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]
         for wheel in _WHEELS:
@@ -105,11 +105,11 @@ def sinkage_bias(exit_share, sinkage_mm, slip, sinkage_by_slip_mm, measured):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(1, 2, figsize=(9, 3.6), sharey=True)
-    _lines(axes[0], exit_share, sinkage_mm, r"exit angle behind the bottom, $-θ_2/θ_1$ (1)", "sinkage (mm)")
+    figure, axes = panels(1, 2, figsize=(9, 3.6), sharey=True)
+    curves(exit_share, sinkage_mm, r"exit angle behind the bottom, $-θ_2/θ_1$ (1)", "sinkage (mm)", axes=axes[0])
     at_rest = measured.sinkage_mm[measured.slip == 0]
     axes[0].axhline(at_rest.mean(), color=BLACK, linestyle=":", label="measured, slip 0")
-    _lines(axes[1], slip, sinkage_by_slip_mm, "slip s", "sinkage (mm)")
+    curves(slip, sinkage_by_slip_mm, "slip s", "sinkage (mm)", axes=axes[1])
     axes[1].plot(measured.slip, measured.sinkage_mm, "s", color=BLACK, label="measured")
     for panel in axes:
         panel.legend(frameon=False, fontsize=9)
@@ -132,7 +132,7 @@ def resistance_against_slip(slip, resistance_n, measured):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes()
+    figure, axes = panels()
     for wheel, y in resistance_n.items():
         colour, dash, marker = _WHEELS[wheel]
         seen = measured[measured.wheel == wheel]
@@ -158,8 +158,8 @@ def sinkage_against_factor(factor, sinkage_mm, measured_mm):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes()
-    _lines(axes, factor, sinkage_mm, "factor on the parameter (1)", "sinkage (mm)")
+    figure, axes = panels()
+    curves(factor, sinkage_mm, "factor on the parameter (1)", "sinkage (mm)", axes=axes)
     axes.axhspan(*measured_mm, color=GREY, alpha=0.3, linewidth=0, label="measured, all slips")
     axes.set(xscale="log", yscale="log")
     for axis in (axes.xaxis, axes.yaxis):
@@ -180,7 +180,7 @@ def median_spread(spreads):
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _axes(figsize=(7.4, 4.2))
+    figure, axes = panels(figsize=(7.4, 4.2))
     for i, (label, table) in enumerate(spreads.items()):
         row = np.arange(len(table))[::-1] - 0.3 * i
         axes.hlines(row, table.low_pct, table.high_pct, color=COLOURS[i], linestyle=DASHES[i], linewidth=2.2,

@@ -1,4 +1,4 @@
-"""Self-checks of the notebooks' exercises: `rdk.check("01.2", answer)`.
+"""Self-checks of the notebooks' exercises: `check("01.2", answer)`.
 
 An exercise computes its answer with `rdk`, independently of the notebooks; no answer is stored. Typical
 mistakes are computed too, each with the hint meant for it. A hint names what went wrong and does not give the

@@ -6,11 +6,11 @@ from functools import cache
 
 import numpy as np
 
-from .. import catalog, power, thermal, validation
-from ..design import Model
-from ..mass import mass_breakdown
-from ..mission import evaluate
-from ..sampling import random_designs
+from rdk import catalog, power, thermal, validation
+from rdk.design import Model
+from rdk.mass import mass_breakdown
+from rdk.mission import evaluate
+from rdk.sampling import random_designs
 from .judging import exercise
 from .shared import _bus_factor, _first, _mare, _rashid
 

@@ -1,17 +1,39 @@
-"""Single-wheel tests: the kernel against measured pull, sinkage and torque, point by point."""
+"""The evidence: the models against measurement, as pandas tables.
+
+Errors are signed, in percent of what was measured or published: positive where the model is above it. Every table is
+computed when asked for, from the files in `data/`; nothing here is fitted to them.
+"""
 from __future__ import annotations
 
+import dataclasses
 import warnings
 
 import numpy as np
 import pandas as pd
 
-from .. import catalog
-from .._fields import check
-from ..design import Model
-from ..mission import evaluate
-from ..terramechanics import Soil, Wheel, wheel_forces
-from .tables import error_pct
+from . import catalog, power
+from ._fields import check
+from .design import Model
+from .mass import mass_breakdown
+from .mission import MASS_COEFFICIENTS, evaluate
+from .terramechanics import Soil, Wheel, wheel_forces
+
+
+def error_pct(model, reference):
+    """Signed error in percent of the size of the reference; NaN where the reference is zero or missing."""
+    reference = np.asarray(reference, float)
+    return 100 * (np.asarray(model) - reference) / np.where(reference == 0, np.nan, abs(reference))
+
+
+def constant(name):
+    """The value of a row of `constants.csv`, those of studies included."""
+    values = {row["name"]: row["value"] for row in catalog.rows("constants.csv")}
+    if name not in values:
+        raise ValueError(f"no constant {name!r} in constants.csv")
+    return float(values[name])
+
+
+# ---- wheels ---------------------------------------------------------------------------------------------------
 
 QUANTITIES = {"drawbar_pull_n": "N", "sinkage_mm": "mm", "torque_nm": "N m"}
 """What a single-wheel test measures, with its unit."""
@@ -252,3 +274,176 @@ def load_transfer(design, scenario, height_to_wheelbase=0.4, slope_deg=25.0, sli
     ends = np.where(six, 1 / 3, 1 / 2)                   # share of the wheels on each end axle
     change = 100 * (ends * (lower + upper - 2 * even)) / even
     return np.where((even > 0) & (shift < 1), change, np.nan)[()]
+
+
+# ---- masses ---------------------------------------------------------------------------------------------------
+
+MASS_ITEMS = ("chassis_kg", "wheels_kg", "motors_kg", "solar_array_kg", "battery_kg", "avionics_kg", "linkage_kg",
+              "harness_kg", "thermal_control_kg", "growth_kg", "payload_kg")
+
+
+def anchor_torque_nm(published_mass_kg, wheel_count, wheel_radius_m, gravity_m_s2=Model.gravity_m_s2):
+    """Hub torque of a rover that publishes none: margin x pull coefficient x lunar weight per wheel x wheel radius."""
+    return (constant("torque_anchor_margin") * constant("torque_anchor_coefficient") * published_mass_kg * gravity_m_s2
+            / wheel_count * wheel_radius_m)
+
+
+def _published(model):
+    """Rows of the mass check and their mass breakdown; fields of `model` broadcast against the rovers (last axis)."""
+    rovers = catalog.table("rovers.csv").query("use == 'mass check'").reset_index(drop=True)
+    anchored = anchor_torque_nm(rovers.published_mass_kg, rovers.wheel_count, rovers.wheel_radius_m)
+    rovers["peak_wheel_torque_nm"] = rovers.peak_wheel_torque_nm.fillna(anchored)
+    sizes = ("wheel_radius_m", "wheel_width_m", "grouser_height_m", "grouser_count", "wheel_count", "chassis_mass_kg",
+             "solar_area_m2", "battery_capacity_wh", "avionics_power_w", "peak_wheel_torque_nm", "payload_mass_kg")
+    return rovers, mass_breakdown(**{name: rovers[name].to_numpy(float) for name in sizes},
+                                  **{name: getattr(model, name) for name in MASS_COEFFICIENTS})
+
+
+def published_masses(model=Model()):
+    """Bottom-up mass against published mass, rover by rover, with the line items.
+
+    Parameters
+    ----------
+    model : Model
+        Its mass coefficients are used, each a single number.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a rover: rover, in_class, wheel_count, published_mass_kg, predicted_mass_kg, error_pct, the line items
+        in kg, peak_wheel_torque_nm (anchored where none is published), and fixed_overhead_kg and fixed_overhead_pct:
+        what does not shrink with the rover (motor and avionics base masses, fixed linkage), grossed up by harness,
+        thermal control and growth, in kg and in percent of the published mass.
+    """
+    rovers, mass = _published(model)
+    table = rovers[["rover", "in_class", "wheel_count", "published_mass_kg"]].copy()
+    table["predicted_mass_kg"] = mass.total_kg
+    table["error_pct"] = error_pct(mass.total_kg, rovers.published_mass_kg)
+    for item in MASS_ITEMS:
+        table[item] = getattr(mass, item)
+    table["peak_wheel_torque_nm"] = rovers.peak_wheel_torque_nm
+    gross = (1 + model.harness_fraction) * (1 + model.thermal_control_fraction) * (1 + model.growth_fraction)
+    table["fixed_overhead_kg"] = gross * (
+        rovers.wheel_count * model.motor_base_mass_kg + model.avionics_base_mass_kg
+        + (rovers.wheel_count == 6) * model.linkage_base_mass_kg)
+    table["fixed_overhead_pct"] = 100 * table.fixed_overhead_kg / rovers.published_mass_kg
+    return table
+
+
+def published_masses_summary(masses=None):
+    """Median and mean |error| of the predicted masses.
+
+    Parameters
+    ----------
+    masses : pandas.DataFrame, optional
+        As returned by `published_masses`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Rows "in class" (5 to 50 kg, the paper's figures) and "all": rovers, median_abs_error_pct, mean_abs_error_pct,
+        mean_error_pct (signed), largest_abs_error_pct, and rank_correlation of signed error with published mass.
+    """
+    masses = published_masses() if masses is None else masses
+    rows = []
+    for label, group in ("in class", masses[masses.in_class.astype(bool)]), ("all", masses):
+        size = group.error_pct.abs()
+        rows.append(dict(rovers_included=label, rovers=len(group), median_abs_error_pct=size.median(),
+                         mean_abs_error_pct=size.mean(), mean_error_pct=group.error_pct.mean(),
+                         largest_abs_error_pct=size.max(),
+                         rank_correlation=group.error_pct.rank().corr(group.published_mass_kg.rank())))
+    return pd.DataFrame(rows)
+
+
+def mass_sensitivity(change_pct=20.0, model=Model()):
+    """What a change of one mass coefficient at a time does to the published-mass table.
+
+    Parameters
+    ----------
+    change_pct : float
+        Relative change of each coefficient, in percent, above -100.
+    model : Model
+        Where the changes start.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a coefficient: coefficient, value, changed_value, median_abs_error_pct over the in-class rovers, and the
+        change of each rover's total in percent, one column a rover.
+    """
+    change = check("change_pct", change_pct, above=-100, scalar=True) / 100
+    names = MASS_COEFFICIENTS
+    scale = 1 + change * np.vstack([np.zeros(len(names)), np.eye(len(names))])           # row 0: nothing changed
+    rovers, mass = _published(dataclasses.replace(
+        model, **{name: getattr(model, name) * scale[:, [k]] for k, name in enumerate(names)}))
+    total, inside = mass.total_kg, rovers.in_class.to_numpy(bool)
+    error = abs(error_pct(total, rovers.published_mass_kg))[1:, inside]
+    value = np.array([getattr(model, name) for name in names])
+    table = pd.DataFrame(dict(coefficient=names, value=value, changed_value=value * (1 + change),
+                              median_abs_error_pct=np.median(error, 1)))
+    return table.join(pd.DataFrame(100 * (total[1:] / total[0] - 1), columns=list(rovers.rover)))
+
+
+# ---- flown rovers ---------------------------------------------------------------------------------------------
+
+def peak_solar_power_w(panel_area_m2, latitude_deg, cell_efficiency=None, clean_array=True):
+    """Noon power of a new horizontal array, by the paper's stack of panel factors.
+
+    Parameters
+    ----------
+    panel_area_m2, latitude_deg : float or ndarray
+    cell_efficiency : float or ndarray, optional
+        `flown_cell_efficiency` of `constants.csv` (0.30) by default.
+    clean_array : bool
+        Count the optical loss of a clean array (0.98).
+
+    Returns
+    -------
+    float or ndarray
+        In W.
+    """
+    cell = constant("flown_cell_efficiency") if cell_efficiency is None else cell_efficiency
+    stack = [constant("flown_" + name) for name in ("packing_factor", "electrical_efficiency", "temperature_derate")]
+    return power.panel_power(panel_area_m2, power.incidence_factor(latitude_deg, 0.0), efficiency=cell * np.prod(stack),
+                             dust_factor=constant("flown_clean_array_factor") if clean_array else 1.0)
+
+
+def flown_rovers():
+    """Peak solar power, survival of the lunar night and range envelope of the rovers that flew, against record.
+
+    The panel lies flat. Power is given with and without the optical loss of a clean array: the paper counts it for
+    Pragyan and leaves it out for Yutu-2. The enclosure (area, absorptivity, heaters, limits) is that of `flown.csv`,
+    largely imputed. The range stops at the scenario's traverse limit; `unlimited_range_km` lifts that limit.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a rover: rover; published_peak_w with its band published_low_w, published_high_w; peak_w (no optical
+        loss), clean_peak_w and its sweep over cell efficiency, clean_peak_low_w and clean_peak_high_w;
+        clean_error_pct; implied_derate (published / peak_w); hot_temperature_c, cold_temperature_c,
+        survives (model), survived (record); range_m, published_traverse_m, unlimited_range_km.
+    """
+    flown = catalog.table("flown.csv")
+    rows = []
+    for row in flown.itertuples():                       # missions of different length cannot share one march
+        model = Model(enclosure_area_base_m2=row.enclosure_area_m2, enclosure_area_coefficient_m2=0.0,
+                      enclosure_absorptivity=row.absorptivity, radioisotope_heater_power_w=row.rhu_power_w,
+                      hibernation_power_w=row.hibernation_power_w,
+                      operating_temperature_max_c=row.max_operating_temp_c)
+        mission = dataclasses.replace(catalog.scenario(row.mission), panel_tilt_deg=0.0)
+        limits = dataclasses.replace(mission, traverse_limit_km=[mission.traverse_limit_km, np.inf])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)             # Yutu-2 is outside the class, and meant to be
+            result = evaluate(catalog.rover(row.rover), limits, model)
+        site = row.panel_area_m2, row.landing_latitude_deg
+        peak, clean = peak_solar_power_w(*site, clean_array=False), peak_solar_power_w(*site)
+        low, high = (peak_solar_power_w(*site, constant("flown_cell_efficiency_" + end)) for end in ("low", "high"))
+        rows.append(dict(
+            rover=row.rover, published_peak_w=row.peak_solar_w, published_low_w=row.peak_solar_low_w,
+            published_high_w=row.peak_solar_high_w, peak_w=peak, clean_peak_w=clean, clean_peak_low_w=low,
+            clean_peak_high_w=high, clean_error_pct=error_pct(clean, row.peak_solar_w).item(),
+            implied_derate=row.peak_solar_w / peak, hot_temperature_c=result.hot_temperature_c[0],
+            cold_temperature_c=result.cold_temperature_c[0], survives=bool(result.thermal_survival[0]),
+            survived=bool(row.survives_lunar_night), range_m=1000 * result.range_km[0],
+            published_traverse_m=row.traverse_published_m, unlimited_range_km=result.range_km[1]))
+    return pd.DataFrame(rows)

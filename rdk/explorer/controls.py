@@ -6,8 +6,9 @@ import threading
 
 import ipywidgets as W
 
-from . import catalog, pictures
-from .design import DESIGN_SPACE, Variable
+from .. import catalog
+from . import pictures
+from ..design import DESIGN_SPACE, Variable
 
 MISSION_SPACE = {
     "latitude_deg": Variable(-90, 90, "deg", "", "latitude"),

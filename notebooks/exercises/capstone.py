@@ -4,10 +4,10 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from .. import catalog
-from ..design import Model, Scenario, Study
-from ..mission import evaluate
-from ..report import requirements
+from rdk import catalog
+from rdk.design import Model, Scenario, Problem
+from rdk.mission import evaluate
+from rdk.report import requirements
 from .judging import exercise
 
 
@@ -17,7 +17,7 @@ SWIRL = Scenario(
     name="reiner_gamma_swirl", latitude_deg=7.5, soil=catalog.soil("apollo-nominal"), duration_earth_days=13,
     slope_deg=12, duty_cycle=0.1, traverse_limit_km=20, payload_mass_kg=4, payload_power_w=12,
     required_obstacle_height_m=0.06, panel_tilt_deg=0,
-    study=Study(constraints=(("range_km", ">=", 10), ("slope_capability_deg", ">=", 18),
+    problem=Problem(constraints=(("range_km", ">=", 10), ("slope_capability_deg", ">=", 18),
                              ("minimum_soc", ">=", 0.2),
                              ("total_mass_kg", "<=", 19))))
 """The mission brief of notebook 12."""

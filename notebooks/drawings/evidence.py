@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .style import BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, _axes, _lines
+from rdk.figures import BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, panels, curves
 
 
 HATCHES = ("", "//", "", "..", "xx", "")
@@ -22,7 +22,7 @@ def mass_shares(shares):
     matplotlib.figure.Figure
         Segments wide enough carry their percentage.
     """
-    figure, ax = _axes(figsize=(7.2, 3.9))
+    figure, ax = panels(figsize=(7.2, 3.9))
     fills = (BLUE, "white", GREY, "white", "white", BLACK)
     edges = (BLUE, ORANGE, GREY, GREEN, BLACK, BLACK)
     left = np.zeros(len(shares))
@@ -59,7 +59,7 @@ def mass_errors(masses, median_pct):
     matplotlib.figure.Figure
         Circles have four wheels, squares six; open marks are outside the class.
     """
-    figure, ax = _axes(figsize=(6.4, 4.0))
+    figure, ax = panels(figsize=(6.4, 4.0))
     ax.axhspan(-median_pct, median_pct, color=GREY, alpha=0.2, lw=0)
     ax.axhline(0, color=BLACK, lw=0.8)
     for row in masses.itertuples():
@@ -98,7 +98,7 @@ def fixed_overheads(masses, mass_kg, shares):
     matplotlib.figure.Figure
         Points lie on the curves, since the overhead is the same for all rovers with as many wheels.
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     for (label, share), colour, dash in zip(shares.items(), COLOURS, DASHES):
         ax.plot(mass_kg, share, color=colour, linestyle=dash, label=label)
     for k, row in enumerate(masses.itertuples()):
@@ -132,7 +132,7 @@ def mass_sensitivity(changes, change_label):
     matplotlib.figure.Figure
         Dots far to the right are coefficients worth knowing well.
     """
-    figure, ax = _axes(figsize=(7.2, 4.4))
+    figure, ax = panels(figsize=(7.2, 4.4))
     rows = np.arange(len(changes))
     for k, rover in enumerate(changes.columns):
         ax.plot(changes[rover], rows, MARKERS[k], color=COLOURS[k], label=rover, markersize=6.5,
@@ -160,10 +160,10 @@ def sun_paths(time_days, elevation_deg):
     matplotlib.figure.Figure
         Below the line at 0 it is night.
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     ax.axhspan(-90, 0, color=GREY, alpha=0.15, lw=0)
     ax.axhline(0, color=BLACK, lw=0.8)
-    _lines(ax, time_days, elevation_deg, "Earth days since sunrise", "elevation of the sun (deg)")
+    curves(time_days, elevation_deg, "Earth days since sunrise", "elevation of the sun (deg)", axes=ax)
     ax.set(ylim=(-90, 95), yticks=range(-90, 91, 30), xlim=(time_days[0], time_days[-1]))
     return figure
 
@@ -184,7 +184,7 @@ def panel_incidence(hour_angle_deg, incidence, no_horizon):
     matplotlib.figure.Figure
         A thin line that leaves a thick one is sunlight through the ground.
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     for k, (label, values) in enumerate(incidence.items()):
         ax.plot(hour_angle_deg, no_horizon[label], color=COLOURS[k], linestyle=":", linewidth=1.2)
         ax.plot(hour_angle_deg, values, color=COLOURS[k], linestyle=DASHES[k % 3], label=label)
@@ -211,9 +211,9 @@ def day_of_power(time_days, power_w):
     matplotlib.figure.Figure
         Grey is night.
     """
-    figure, axes = _axes(2, 2, figsize=(7.4, 4.8), sharex=True, sharey=True)
+    figure, axes = panels(2, 2, figsize=(7.4, 4.8), sharex=True, sharey=True)
     for ax, (site, series) in zip(axes.flat, power_w.items()):
-        _lines(ax, time_days, series, "", "", legend=False)
+        curves(time_days, series, "", "", legend=False, axes=ax)
         ax.axvspan(time_days[-1] / 2, time_days[-1], color=GREY, alpha=0.15, lw=0)
         ax.set_title(site, fontsize=10)
     axes[0, 0].set(xlim=(time_days[0], time_days[-1]), ylim=(0, None))
@@ -242,7 +242,7 @@ def power_flows(log):
              "thrown away": log.discarded_w}
     taken = {"from the array": direct, "from the battery": np.maximum(-net, 0) - log.unserved_w,
              "not served": log.unserved_w}
-    figure, axes = _axes(2, 1, figsize=(7.0, 5.2), sharex=True)
+    figure, axes = panels(2, 1, figsize=(7.0, 5.2), sharex=True)
     for ax, flows, title in zip(axes, (given, taken), ("array (W)", "load (W)")):
         parts = ax.stackplot(days, *flows.values(), labels=flows.keys(),
                              colors=("#9ccbe6", "white", "#dddddd"),
@@ -270,7 +270,7 @@ def efficiency_stack(factors, others):
     matplotlib.figure.Figure
         Each bar is the product of the factors so far.
     """
-    figure, ax = _axes()
+    figure, ax = panels()
     left = np.cumprod(list(factors.values()))
     ax.bar(range(len(left)), left, color="#9ccbe6", edgecolor=BLUE, width=0.6)
     for k, (value, factor) in enumerate(zip(left, factors.values())):
@@ -297,7 +297,7 @@ def peak_solar(flown):
     matplotlib.figure.Figure
         Grey is what was published, the circle is a clean new array.
     """
-    figure, axes = _axes(1, len(flown), figsize=(6.4, 3.6))
+    figure, axes = panels(1, len(flown), figsize=(6.4, 3.6))
     for ax, row in zip(np.atleast_1d(axes), flown.itertuples()):
         ax.fill_between([-0.5, 0.5], row.published_low_w, row.published_high_w, color=GREY, alpha=0.3, lw=0,
                         label="published band")
@@ -331,10 +331,10 @@ def node_temperatures(heat_w, temperature_c, limits_c, marks):
     matplotlib.figure.Figure
         Curves are steep where there is little heat: in the cold each watt counts.
     """
-    figure, ax = _axes(figsize=(6.8, 4.0))
+    figure, ax = panels(figsize=(6.8, 4.0))
     ax.axhspan(*limits_c, color=GREY, alpha=0.2, lw=0)
-    _lines(ax, heat_w, temperature_c, "heat to radiate (W)", "temperature of the enclosure (degC)",
-           legend=False)
+    curves(heat_w, temperature_c, "heat to radiate (W)", "temperature of the enclosure (degC)",
+           legend=False, axes=ax)
     for k, (label, (heat, temperature)) in enumerate(marks.items()):
         ax.plot(heat, temperature, MARKERS[k % len(MARKERS)], color=BLACK, markersize=7,
                 markerfacecolor="white",

@@ -6,11 +6,11 @@ from functools import cache
 
 import numpy as np
 
-from .. import catalog, terramechanics
-from ..design import DESIGN_SPACE, Design, Model
-from ..mission import evaluate
-from ..sampling import attribution, intervals
-from ..tradespace import pareto_front
+from rdk import catalog, terramechanics
+from rdk.design import DESIGN_SPACE, Design, Model
+from rdk.mission import evaluate
+from rdk.sampling import attribution, intervals
+from rdk.tradespace import pareto_front
 from .judging import exercise
 from .shared import _first, _mare, _rashid
 

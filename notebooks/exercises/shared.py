@@ -5,8 +5,8 @@ from functools import cache
 
 import numpy as np
 
-from .. import catalog
-from ..design import Model
+from rdk import catalog
+from rdk.design import Model
 
 
 @cache
