@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import functools
+import html
 import math
 
 import numpy as np
@@ -88,6 +90,24 @@ def check(name, value, minimum=-math.inf, maximum=math.inf, *, above=None, below
     if whole or choices:
         array = array.astype(int)
     return array if array.ndim else array.item()
+
+
+def unknown(what, name, known):
+    """A ValueError for a name that nothing has: it offers the nearest, or all where none is near."""
+    near = difflib.get_close_matches(str(name), known, 3, cutoff=0.45)
+    return ValueError(f"{what} {name!r}; {'nearest are' if near else 'choose from'} {', '.join(near or known)}")
+
+
+class Shown:
+    """Base of results: as a cell's last line they are a heading and a short table, the pair that `_summary` returns."""
+
+    def __repr__(self):
+        heading, frame = self._summary()
+        return f"{heading}\n{frame.to_string(max_rows=10, float_format='{:.4g}'.format)}"
+
+    def _repr_html_(self):
+        heading, frame = self._summary()
+        return f"<p>{html.escape(heading)}</p>{frame.to_html(max_rows=10, border=0, float_format='{:.4g}'.format)}"
 
 
 def together(**shapes):
