@@ -12,7 +12,7 @@ import exercises as course
 
 REPO = Path(__file__).parents[1]
 PATHS = {path.name[:2]: path for path in sorted((REPO / "notebooks").glob("[0-9][0-9]_*.ipynb"))}
-TASKS = course.exercises()
+TASKS = course.EXERCISES
 MISTAKES = [(number, hint) for number, task in sorted(TASKS.items()) for hint in task.mistakes]
 HEADING = re.compile(r"^### Exercise (\d\d\.\d)\b(.*)$", re.M)
 pytestmark = pytest.mark.filterwarnings("ignore:design outside the class")
@@ -93,43 +93,55 @@ def test_unknown_exercises_are_refused_and_the_known_ones_named():
         course.check("12.9", 1.0)
     with pytest.raises(ValueError, match=r"no exercise 'Rashid'; choose from 00\.1|12\.1"):
         course.check("Rashid", 1.0)
-    with pytest.raises(ValueError, match="registered twice"):
-        course.exercise("12.1", lambda: 1.0, "")
 
 
-@pytest.mark.parametrize("answer", ["0.12", None, True, [1.0, 2.0], [[1.0], [1.0, 2.0]], np.nan, np.inf, 1j,
-                                    {}])
-def test_answers_of_the_wrong_kind_to_a_number(answer):
-    with pytest.raises(ValueError, match="exercise 12.1 asks for one number"):
-        course.check("12.1", answer)
+@pytest.mark.parametrize("number", sorted(TASKS))
+def test_the_stored_kind_is_that_of_the_answer(number):
+    expected, kind = TASKS[number].expected, TASKS[number].kind
+    if isinstance(expected, (rdk.Design, str, set, bool, np.bool_)):
+        kinds = {rdk.Design: "Design", str: "word", set: "set of words"}
+        assert kind == kinds.get(type(expected), "True or False")
+    else:
+        assert kind == ("number" if np.ndim(expected) == 0 else f"{len(expected)} numbers")
 
 
-@pytest.mark.parametrize("answer", [1.0, "a rover", None, {"wheel_radius_m": 0.1},
-                                    rdk.random_designs(3, seed=1)])
-def test_answers_of_the_wrong_kind_to_a_design_task(answer):
-    with pytest.raises(ValueError, match="exercise 12.4 asks for one Design; got"):
-        course.check("12.4", answer)
+WORDS = ("sun", "rain", "snow")
+WORD = course.Exercise("word", lambda: "sun", "look up", {"too wet": lambda: "rain"}, choices=WORDS)
+SET = course.Exercise("set of words", lambda: {"sun", "rain"}, "look up", choices=WORDS)
+TRUTH = course.Exercise("True or False", lambda: True, "look up")
+NUMBER = course.Exercise("number", lambda: 2.0, "look up")
+PAIR = course.Exercise("2 numbers", lambda: [1.0, 0.0], "look up", {"swapped": lambda: [0.0, 1.0]})
+DESIGN = course.Exercise("Design", lambda: rdk.rover("Rashid-1"), "", judge=lambda design: "")
 
 
-def test_answers_of_the_wrong_kind_to_the_other_kinds(monkeypatch):
-    monkeypatch.setattr(course.judging, "EXERCISES", dict(TASKS))
-    course.exercise("99.1", lambda: "sun", "look up", {"too wet": lambda: "rain"},
-                    choices=("sun", "rain", "snow"))
-    course.exercise("99.2", lambda: {"sun", "rain"}, "look up", choices=("sun", "rain", "snow"))
-    course.exercise("99.3", lambda: True, "look up")
-    course.exercise("99.4", lambda: [1.0, 0.0], "look up", {"swapped": lambda: [0.0, 1.0]})
-    for number, wrong, words in (
-            ("99.1", "hail", "one of the words sun, rain, snow"), ("99.1", 1, "one of the words"),
-            ("99.1", ["rain"], "one of the words"),
-            ("99.2", "sun", "a set of words from sun, rain, snow"), ("99.2", {1}, "a set of words"),
-            ("99.3", 1, "True or False"), ("99.3", "True", "True or False"), ("99.4", 1.0, "2 numbers"),
-            ("99.4", [True, False], "2 numbers")):
-        with pytest.raises(ValueError, match=f"exercise {number} asks for {words}.*; got"):
-            course.check(number, wrong)
-    assert course.check("99.1", " Sun ") and course.check("99.2", ["RAIN", "sun"]) and course.check("99.3", np.True_)
-    assert course.check("99.1", "rain").message == "Not yet. too wet" and not course.check("99.2", {"sun"})
-    assert course.check("99.4", [1.0, 0.0]) and course.check("99.4", np.array([1, 0]))
-    assert course.check("99.4", [0, 1]).message == "Not yet. swapped" and not course.check("99.4", [1.0, 0.1])
+@pytest.mark.parametrize("task, wrong, words", [
+    (WORD, "hail", "one of the words sun, rain, snow"), (WORD, 1, "one of the words"), (WORD, ["rain"], "one of"),
+    (SET, "sun", "a set of words from sun, rain, snow"), (SET, {1}, "a set of words"),
+    (TRUTH, 1, "True or False"), (TRUTH, "True", "True or False"),
+    *[(NUMBER, wrong, "one number") for wrong in ("0.12", None, True, [1.0, 2.0], [[1.0], [1.0, 2.0]], np.nan, 1j,
+                                                  {}, (16, "hub"), [[1.0]])],
+    (PAIR, 1.0, "2 numbers"), (PAIR, [True, False], "2 numbers"), (PAIR, [1.0, np.inf], "2 numbers"),
+    *[(DESIGN, wrong, "one Design") for wrong in (1.0, "a rover", {"wheel_radius_m": 0.1},
+                                                  rdk.random_designs(3, seed=1))]])
+def test_an_answer_of_another_kind_is_told_what_is_asked_for(task, wrong, words):
+    verdict = course.judge(task, wrong)
+    assert not verdict and verdict.message.startswith(f"This exercise asks for {words}")
+    assert "you gave" in verdict.message
+
+
+def test_no_answer_is_computed_to_refuse_another_kind():
+    def never():
+        raise AssertionError("computed")
+    assert not course.judge(course.Exercise("number", never, ""), "1") and not course.judge(
+        course.Exercise("3 numbers", never, ""), [1.0])
+
+
+def test_answers_of_the_right_kind_are_judged():
+    assert course.judge(WORD, " Sun ") and course.judge(SET, ["RAIN", "sun"]) and course.judge(TRUTH, np.True_)
+    assert course.judge(WORD, "rain").message == "Not yet. too wet" and not course.judge(SET, {"sun"})
+    assert course.judge(PAIR, [1.0, 0.0]) and course.judge(PAIR, np.array([1, 0])) and course.judge(NUMBER, [2])
+    assert course.judge(PAIR, [0, 1]).message == "Not yet. swapped" and not course.judge(PAIR, [1.0, 0.1])
+    assert "the unit" in course.judge(NUMBER, 2000.0).message and course.judge(DESIGN, rdk.rover("Pragyan"))
 
 
 # ---- the notebooks -----------------------------------------------------------------------------------------

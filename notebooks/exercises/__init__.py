@@ -2,18 +2,14 @@
 
 An exercise computes its answer with `rdk`, independently of the notebooks; no answer is stored. Typical
 mistakes are computed too, each with the hint meant for it. A hint names what went wrong and does not give the
-answer away.
-
-The exercises are grouped by notebook, one block an exercise: `wheel` (00 to 02), `vehicle` (03 to 05),
-`designs` (06 to 08), `trust` (09 to 11), `capstone` (12). How an answer is judged is in `judging`.
+answer away. The exercises are grouped by notebook: `wheel` (00 to 02), `vehicle` (03 to 05), `designs` (06 to 08),
+`trust` (09 to 11), `capstone`. How an answer is judged is in `judging`.
 """
-from .judging import EXERCISES, UNITS, Exercise, Verdict, exercise, judge  # noqa: F401
+from . import capstone, designs, trust, vehicle, wheel
+from .judging import UNITS, Exercise, Verdict, judge  # noqa: F401
 
-
-def exercises():
-    """Every exercise by its number; loads the modules that register them."""
-    from . import wheel, vehicle, designs, trust, capstone  # noqa: F401  fill EXERCISES
-    return EXERCISES
+EXERCISES = dict(**wheel.EXERCISES, **vehicle.EXERCISES, **designs.EXERCISES, **trust.EXERCISES, **capstone.EXERCISES)
+"""Every exercise by its number; a number given twice is an error here."""
 
 
 def check(number, answer):
@@ -29,12 +25,12 @@ def check(number, answer):
     Returns
     -------
     Verdict
-        True where right; shows itself as a sentence.
+        True where right; shows itself as a sentence. An answer of another kind or length is told what is asked for.
 
     Raises
     ------
     ValueError
-        If there is no such exercise, or the answer is not of the kind asked for.
+        If there is no such exercise.
 
     Examples
     --------
@@ -42,6 +38,10 @@ def check(number, answer):
     Not yet. A rigid chassis does not climb an obstacle as high as its wheel's radius.
     >>> bool(check("12.1", 0.12))
     True
+    >>> check("12.1", "0.12 m")
+    This exercise asks for one number; you gave '0.12 m'.
     """
-    exercises()
-    return judge(number, answer)
+    if str(number) not in EXERCISES:
+        near = [n for n in EXERCISES if n[:2] == str(number)[:2]] or list(EXERCISES)
+        raise ValueError(f"no exercise {number!r}; choose from {', '.join(sorted(near))}")
+    return judge(EXERCISES[str(number)], answer)

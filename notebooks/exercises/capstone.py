@@ -5,10 +5,14 @@ from dataclasses import replace
 from functools import cache
 
 from rdk import catalog
-from rdk.design import Model, Scenario, Problem
+from rdk.design import Model, Problem, Scenario
 from rdk.mission import evaluate
 from rdk.report import requirements
-from .judging import exercise
+
+from .judging import Exercise
+
+EXERCISES = {}
+"""The exercises of these notebooks by number."""
 
 
 # ---- 12 design your rover ----------------------------------------------------------------------------------
@@ -62,8 +66,8 @@ def _accepts(design):
     return ""
 
 
-exercise(
-    "12.1", lambda: SWIRL.required_obstacle_height_m / Model().rigid_obstacle_ratio,
+EXERCISES["12.1"] = Exercise(
+    "number", lambda: SWIRL.required_obstacle_height_m / Model().rigid_obstacle_ratio,
     "The obstacle that a rover climbs is a multiple of its wheel radius; the suspension decides which.",
     {"That is the radius for six wheels on a rocker-bogie; the question asks for four on a rigid chassis.":
         lambda: SWIRL.required_obstacle_height_m / Model().rocker_bogie_obstacle_ratio,
@@ -71,8 +75,8 @@ exercise(
      "The ratio is height over radius, not radius over height: divide.": lambda: 0.06 * 0.5,
      "In metres, please, and the radius rather than the diameter.": lambda: 0.24}, within=0.005)
 
-exercise(
-    "12.2", lambda: _drained_wh() / (1 - 0.2),
+EXERCISES["12.2"] = Exercise(
+    "number", lambda: _drained_wh() / (1 - 0.2),
     "Read `stored_wh` of the log with a battery large enough never to run low, at duty cycle 0.",
     {"That is the energy which leaves the battery. One fifth of it must still be there in the end.":
         _drained_wh,
@@ -84,8 +88,8 @@ exercise(
         lambda: 22 * (_first_morning().solar_w < 22).sum() / Model().discharge_efficiency / (1 - 0.2)},
         within=0.004)
 
-exercise(
-    "12.3", lambda: evaluate(swirl_guess(), replace(
+EXERCISES["12.3"] = Exercise(
+    "number", lambda: evaluate(swirl_guess(), replace(
         SWIRL, soil=catalog.soil("sourcebook-trafficability"))).slope_capability_deg,
     "Replace the soil of the mission, evaluate the first guess on it, and read slope_capability_deg.",
     {"That is the capability in the mission's own soil: replace the soil first.":
@@ -104,8 +108,8 @@ def _accepted():
                    solar_area_m2=0.45, battery_capacity_wh=270, peak_wheel_torque_nm=0.8)
 
 
-exercise(
-    "12.4", _accepted, "",
+EXERCISES["12.4"] = Exercise(
+    "Design", _accepted, "",
     {"outside the limits of the brief": lambda: replace(_accepted(), wheel_radius_m=0.16),
      "before any uncertainty comes in: lowest state of charge": swirl_guess,
      "Too little margin: “lowest state of charge": lambda: replace(_accepted(), battery_capacity_wh=240),

@@ -11,8 +11,12 @@ from rdk.design import DESIGN_SPACE, Design, Model
 from rdk.mission import evaluate
 from rdk.sampling import attribution, intervals
 from rdk.tradespace import pareto_front
-from .judging import exercise
-from .shared import _first, _mare, _rashid
+
+from .judging import Exercise
+from .shared import first, mare, rashid
+
+EXERCISES = {}
+"""The exercises of these notebooks by number."""
 
 
 # ---- 06 point design ---------------------------------------------------------------------------------------
@@ -23,18 +27,18 @@ _BINDS = ("soil", "traction", "torque", "hub speed", "sun", "battery", "range li
 @cache
 def _polar_slopes():
     slopes_deg = np.arange(36.0)
-    return slopes_deg, evaluate(_rashid(), replace(catalog.scenario("polar_prospecting"),
+    return slopes_deg, evaluate(rashid(), replace(catalog.scenario("polar_prospecting"),
                                                    slope_deg=slopes_deg))
 
 
 def _missed_pct(metric, limit):
-    return 100 * np.mean(getattr(intervals(_rashid(), _mare(), draws=200).draws, metric) < limit)
+    return 100 * np.mean(getattr(intervals(rashid(), mare(), draws=200).draws, metric) < limit)
 
 
 @cache
 def _torque_shares(swapped=False):
     """What the torque of Yutu-2 gets in its difference to Rashid-1 at the pole, and what it brings alone."""
-    polar, pair = catalog.scenario("polar_prospecting"), (catalog.rover("Yutu-2"), _rashid())
+    polar, pair = catalog.scenario("polar_prospecting"), (catalog.rover("Yutu-2"), rashid())
     large, small = pair[::-1] if swapped else pair
     shares = attribution(large, small, polar).contributions["range_km"]
     alone = evaluate(replace(small, peak_wheel_torque_nm=large.peak_wheel_torque_nm), polar)
@@ -47,7 +51,7 @@ def _tenacious_mended(design):
     changed = [name for name in DESIGN_SPACE if getattr(design, name) != getattr(tenacious, name)]
     if len(changed) > 2:
         return "You changed " + ", ".join(changed) + "."
-    result = evaluate(design, _mare())
+    result = evaluate(design, mare())
     if result.stalled:
         return "It stalls: " + ("the hub is too weak."
                                 if result.wheel_torque_nm > design.peak_wheel_torque_nm else "no grip.")
@@ -56,42 +60,42 @@ def _tenacious_mended(design):
     return "" if result.range_km >= 50 else f"It drives {result.range_km:.0f} km: what binds now?"
 
 
-exercise(
-    "06.1", lambda: "sun", "The bold line at the top of the answers names it.",
+EXERCISES["06.1"] = Exercise(
+    "word", lambda: "sun", "The bold line at the top of the answers names it.",
     {"The pack is empty for hours, but more of it would not help: there is nothing to fill it.":
         lambda: "battery",
      "It stands still, yet its wheels could climb: look at 'stalled'.": lambda: "traction",
      "The read-outs show that the hub gives enough.": lambda: "torque"}, choices=_BINDS)
 
-exercise(
-    "06.2", lambda: _first(_polar_slopes()[0], _polar_slopes()[1].stalled),
+EXERCISES["06.2"] = Exercise(
+    "number", lambda: first(_polar_slopes()[0], _polar_slopes()[1].stalled),
     "Move the slope until 'stalled' says yes.",
     {"That is the slope capability, rounded up; it is taken at slip 0.6, and the rover may slip more.":
         lambda: np.ceil(_polar_slopes()[1].slope_capability_deg[0]),
-     "There it still drives, if slowly.": lambda: _first(_polar_slopes()[0], _polar_slopes()[1].stalled) - 1},
+     "There it still drives, if slowly.": lambda: first(_polar_slopes()[0], _polar_slopes()[1].stalled) - 1},
     within=0.005)
 
-exercise(
-    "06.3", lambda: _missed_pct("slope_capability_deg", 15), "The share of draws below the limit, times 100.",
+EXERCISES["06.3"] = Exercise(
+    "number", lambda: _missed_pct("slope_capability_deg", 15), "The share of draws below the limit, times 100.",
     {"That is the tail of the interval, not the share below the limit.": lambda: 5.0,
      "Those that make it; the question is about those that miss.":
         lambda: 100 - _missed_pct("slope_capability_deg", 15),
      "Those that stall; slope capability is judged at slip 0.6.":
-        lambda: 100 * intervals(_rashid(), _mare(), draws=200).low["stalled"]})
+        lambda: 100 * intervals(rashid(), mare(), draws=200).low["stalled"]})
 
-exercise(
-    "06.4", _torque_shares,
+EXERCISES["06.4"] = Exercise(
+    "2 numbers", _torque_shares,
     "The bar of the view 'why', then the change of range when torque alone is changed.",
     {"From Rashid-1 to Yutu-2, not back: Rashid-1 is the baseline.": lambda: _torque_shares(True),
      "First the share, then the gain alone.": lambda: _torque_shares()[::-1]}, within=0.05)
 
-exercise(
-    "06.5", lambda: replace(catalog.rover("Tenacious"), wheel_radius_m=0.08, peak_wheel_torque_nm=0.2), "",
+EXERCISES["06.5"] = Exercise(
+    "Design", lambda: replace(catalog.rover("Tenacious"), wheel_radius_m=0.08, peak_wheel_torque_nm=0.2), "",
     {"the hub is too weak": lambda: replace(catalog.rover("Tenacious"), wheel_radius_m=0.1),
      "what binds now": lambda: replace(catalog.rover("Tenacious"), peak_wheel_torque_nm=0.3),
      "It weighs": lambda: replace(catalog.rover("Tenacious"), wheel_radius_m=0.12, peak_wheel_torque_nm=0.4),
      "no grip": lambda: replace(catalog.rover("Tenacious"), grouser_height_m=0.0, peak_wheel_torque_nm=0.4),
-     "You changed": lambda: replace(_rashid(), wheel_radius_m=0.08)}, judge=_tenacious_mended)
+     "You changed": lambda: rashid(wheel_radius_m=0.08)}, judge=_tenacious_mended)
 
 
 # ---- 07 Pareto fronts --------------------------------------------------------------------------------------
@@ -138,36 +142,36 @@ def _floaters(goals=_FLOAT):
     return [front.performance.total_mass_kg.max(), 1000 * front.designs.wheel_width_m.max()]
 
 
-exercise(
-    "07.1", lambda: 85 - _mare().traverse_limit_km,
+EXERCISES["07.1"] = Exercise(
+    "number", lambda: 85 - mare().traverse_limit_km,
     "Read the message: it says how close the nearest design came.",
-    {"So far the nearest design came; by how much did it miss?": lambda: _mare().traverse_limit_km,
+    {"So far the nearest design came; by how much did it miss?": lambda: mare().traverse_limit_km,
      "That is what you asked for.": lambda: 85.0,
      "No design meets the demand; the question is by how much the nearest missed it.": lambda: 0.0},
     within=0.001)
 
-exercise(
-    "07.2", lambda: _front().history[-1],
+EXERCISES["07.2"] = Exercise(
+    "number", lambda: _front().history[-1],
     "The share of the darts that land in the dominated part, times the box.",
     {"That is the share of the darts; the box is larger than 1.": lambda: _front().history[-1] / 1.05**3,
      "That is the part of the box that is not dominated.": lambda: 1.05**3 - _front().history[-1]},
     within=0.03)
 
-exercise(
-    "07.3", lambda: [_mass_at(_front()), _mass_at(_front(six=True))],
+EXERCISES["07.3"] = Exercise(
+    "2 numbers", lambda: [_mass_at(_front()), _mass_at(_front(six=True))],
     "Sort each front by slope capability and interpolate its mass at 34 deg.",
     {"Those are the lightest of each front; they do not climb alike.":
         lambda: [_front().performance.total_mass_kg.min(), _front(six=True).performance.total_mass_kg.min()],
      "The other way round: first four wheels, then six.":
         lambda: [_mass_at(_front(six=True)), _mass_at(_front())]}, within=0.1)
 
-exercise(
-    "07.4", _late_polar, "",
+EXERCISES["07.4"] = Exercise(
+    "2 numbers", _late_polar, "",
     {"the mass of the lightest design": lambda: [12.0, 6.0],
      "it has not come down yet": lambda: [9.5, 150.0]}, judge=_settled)
 
-exercise(
-    "07.5", _floaters, "Objectives range, mass and sinkage; the slope is a constraint now.",
+EXERCISES["07.5"] = Exercise(
+    "2 numbers", _floaters, "Objectives range, mass and sinkage; the slope is a constraint now.",
     {"That is the front with slope capability as an objective: ballast buys slope there.":
         lambda: _floaters((("range_km", "max"), ("total_mass_kg", "min"), ("slope_capability_deg", "max"))),
      "First the mass, then the width.": lambda: _floaters()[::-1]}, within=0.15)
@@ -177,8 +181,8 @@ exercise(
 
 _NIGHT_WH = 13.0 * Model().synodic_day_h / 2             # avionics and payload through half a lunar day
 
-exercise(
-    "08.1", lambda: 0.15 * Model().rigid_obstacle_ratio,
+EXERCISES["08.1"] = Exercise(
+    "number", lambda: 0.15 * Model().rigid_obstacle_ratio,
     "Obstacle height is the wheel radius times a ratio that depends on the suspension.",
     {"That is for a rocker-bogie; the question is about a rigid chassis on four wheels.":
         lambda: 0.15 * Model().rocker_bogie_obstacle_ratio,
@@ -186,8 +190,8 @@ exercise(
      "That is for the largest wheel of the search; this lander leaves room for a smaller one.": lambda: 0.1},
     within=0.005)
 
-exercise(
-    "08.2", lambda: _NIGHT_WH / (1 - Model().soc_floor) / Model().discharge_efficiency,
+EXERCISES["08.2"] = Exercise(
+    "number", lambda: _NIGHT_WH / (1 - Model().soc_floor) / Model().discharge_efficiency,
     "Energy is power times hours; then allow for what may not be used and for what is lost on the way out.",
     {"That is what the rover uses. The battery may not be emptied, and loses a part in discharging.":
         lambda: _NIGHT_WH,
@@ -213,8 +217,8 @@ def _indifferent_k_mm():
     return brentq(lead, 2, 18)
 
 
-exercise(
-    "08.3", _indifferent_k_mm,
+EXERCISES["08.3"] = Exercise(
+    "number", _indifferent_k_mm,
     "Compute both slope capabilities over shear moduli from 2 to 18 mm and look for the sign change.",
     {"In millimetres, please.": lambda: _indifferent_k_mm() / 1000,
      "That is the modulus of the mare soil itself, where narrow wins.": lambda: 18.0,
@@ -241,8 +245,8 @@ def _soft():
                   avionics_power_w=6, peak_wheel_torque_nm=1.0)
 
 
-exercise(
-    "08.4", _soft, "",
+EXERCISES["08.4"] = Exercise(
+    "Design", _soft, "",
     {"It presses too hard": lambda: replace(_soft(), wheel_width_m=0.03),
      "It climbs": lambda: replace(_soft(), grouser_height_m=0.01),
      "because it stalls": lambda: replace(_soft(), peak_wheel_torque_nm=0.1),

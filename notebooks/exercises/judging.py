@@ -2,15 +2,13 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from functools import cached_property
-from typing import Callable
 
 import numpy as np
 
 from rdk.design import Design
 
-EXERCISES = {}
-"""Every exercise by its number, filled by the modules of the exercises."""
 UNITS = (1e3, 1e-3, 1e2, 1e-2, 1e6, 1e-6, 24.0, 1 / 24, 60.0, 1 / 60, 3.6, 1 / 3.6, np.pi / 180, 180 / np.pi,
          -1.0)
 """Factors by which an answer in another unit is off."""
@@ -22,10 +20,11 @@ class Exercise:
 
     Attributes
     ----------
-    number : str
-        Notebook and exercise, such as "01.2".
+    kind : str
+        "number", "3 numbers", "word", "set of words", "True or False" or "Design". It is stored, so that an answer
+        of another kind is refused without computing the right one.
     answer : callable
-        Returns a right answer: a number, a list of numbers, a word, a set of words, True or False, a Design.
+        Returns a right answer.
     hint : str
         What to look at, for a wrong answer that no mistake explains.
     mistakes : dict of str to callable
@@ -37,7 +36,7 @@ class Exercise:
     choices : tuple of str
         Words to choose from.
     """
-    number: str
+    kind: str
     answer: Callable
     hint: str
     mistakes: dict = dataclasses.field(default_factory=dict)
@@ -64,23 +63,13 @@ class Verdict:
         return self.message
 
 
-def exercise(number, answer, hint, mistakes=None, **options):
-    """Register an exercise; the arguments are the attributes of `Exercise`."""
-    if number in EXERCISES:
-        raise ValueError(f"exercise {number} is registered twice")
-    EXERCISES[number] = Exercise(number, answer, hint, mistakes or {}, **options)
-
-
-def judge(number, answer):
-    """The verdict on the answer to a registered exercise; see `check`."""
-    number = str(number)
-    if number not in EXERCISES:
-        near = [n for n in EXERCISES if n[:2] == number[:2]] or list(EXERCISES)
-        raise ValueError(f"no exercise {number!r}; choose from {', '.join(sorted(near))}")
-    task = EXERCISES[number]
+def judge(task, answer):
+    """The verdict on an answer to an exercise; see `check`."""
     if answer is ...:
         return Verdict(False, "No answer yet: put yours in place of the three dots and run the cell again.")
-    answer = _of_kind(task, answer)
+    answer, asked = _of_kind(task, answer)
+    if asked:
+        return Verdict(False, asked)
     if task.judge is not None:
         missing = task.judge(answer)
         return Verdict(not missing, f"Not yet. {missing}" if missing else "Right: it does what was asked.")
@@ -89,47 +78,39 @@ def judge(number, answer):
     for hint, wrong in task.mistakes.items():
         if _agree(answer, wrong(), task.within):
             return Verdict(False, "Not yet. " + hint)
-    if isinstance(answer, np.ndarray) and any(_agree(answer * unit, task.expected, task.within)
+    if isinstance(answer, (float, np.ndarray)) and any(_agree(answer * unit, task.expected, task.within)
                                               for unit in UNITS):
         return Verdict(False, "Not yet. The digits are right: look at the unit asked for, or at the sign.")
     return Verdict(False, "Not yet. " + task.hint)
 
 
 def _of_kind(task, answer):
-    """The answer as the kind of thing that the exercise asks for, or a ValueError that says what that is."""
-    expected, asks = task.expected, f"exercise {task.number} asks for"
-    got = f"; got {answer!r}" if len(repr(answer)) < 80 else f"; got a {type(answer).__name__}"
-    if isinstance(expected, Design):
-        if not isinstance(answer, Design) or answer.shape:
-            raise ValueError(f"{asks} one Design{got}")
-        return answer
-    if isinstance(expected, (str, set)):
-        words = [answer] if isinstance(expected, str) else answer
-        some = f"one of the words {', '.join(task.choices)}" if isinstance(expected, str) else (
-            f"a set of words from {', '.join(task.choices)}")
-        if not isinstance(words, (set, list, tuple)) or not all(isinstance(word, str) for word in words) or (
-                not {word.strip().lower() for word in words} <= {word.lower() for word in task.choices}):
-            raise ValueError(f"{asks} {some}{got}")
+    """The answer as the kind of thing that the exercise asks for, and "" or a sentence that says what that is."""
+    choices = {word.lower() for word in task.choices}
+    asks = {"number": "one number", "Design": "one Design, such as rdk.rover('Rashid-1')",
+            "word": f"one of the words {', '.join(task.choices)}",
+            "set of words": f"a set of words from {', '.join(task.choices)}"}.get(task.kind, task.kind)
+    got = repr(answer) if len(repr(answer)) < 80 else f"a {type(answer).__name__}"
+    wrong = None, f"This exercise asks for {asks}; you gave {got}."
+    if task.kind == "Design":
+        return (answer, "") if isinstance(answer, Design) and not answer.shape else wrong
+    if task.kind == "True or False":
+        return (bool(answer), "") if isinstance(answer, (bool, np.bool_)) else wrong
+    if task.choices:
+        words = [answer] if task.kind == "word" else answer
+        if not isinstance(words, (set, list, tuple)) or not all(isinstance(word, str) for word in words):
+            return wrong
         words = {word.strip().lower() for word in words}
-        return words if isinstance(expected, set) else words.pop()
-    if isinstance(expected, (bool, np.bool_)):
-        if not isinstance(answer, (bool, np.bool_)):
-            raise ValueError(f"{asks} True or False{got}")
-        return bool(answer)
-    shape = np.shape(expected)
-    asks += {0: " one number", 1: f" {np.size(expected)} numbers"}.get(len(shape),
-                                                                       f" numbers of shape {shape}")
+        return (words.pop() if task.kind == "word" else words, "") if words <= choices else wrong
     try:
         given = np.asarray(answer)
     except ValueError:                                   # ragged
-        raise ValueError(asks + got) from None
-    if given.shape == (1,) and not shape:
-        given = given[0]
-    if given.dtype.kind not in "iuf" or np.shape(given) != shape:
-        raise ValueError(asks + got)
-    if not np.isfinite(given).all():
-        raise ValueError(f"{asks}, finite{got}")
-    return np.asarray(given, float)
+        return wrong
+    count = 1 if task.kind == "number" else int(task.kind.split()[0])
+    flat = given.reshape(-1)
+    if given.dtype.kind not in "iuf" or flat.size != count or given.ndim > 1 or not np.isfinite(flat).all():
+        return wrong
+    return (flat[0] if task.kind == "number" else flat).astype(float), ""
 
 
 def _agree(answer, expected, within):

@@ -10,8 +10,12 @@ from scipy.optimize import least_squares
 
 from rdk import catalog, terramechanics, validation
 from rdk.mission import evaluate
-from .judging import exercise
-from .shared import _bus_factor, _first, _mare, _rashid
+
+from .judging import Exercise
+from .shared import bus_factor, first, mare, rashid
+
+EXERCISES = {}
+"""The exercises of these notebooks by number."""
 
 
 # ---- 00 start here -----------------------------------------------------------------------------------------
@@ -25,16 +29,16 @@ def _drive_highland(**changes):
 @cache
 def _loaded():
     payload_kg = np.linspace(0, 30, 3001)
-    return payload_kg, evaluate(_rashid(), replace(_mare(), payload_mass_kg=payload_kg))
+    return payload_kg, evaluate(rashid(), mare(payload_mass_kg=payload_kg))
 
 
 def _stall_payload():
     payload_kg, result = _loaded()
-    return _first(payload_kg, result.stalled)
+    return first(payload_kg, result.stalled)
 
 
 def _structure_share():
-    return _rashid().chassis_mass_kg / evaluate(_rashid(), _mare()).total_mass_kg
+    return rashid().chassis_mass_kg / evaluate(rashid(), mare()).total_mass_kg
 
 
 def _climbs_highland(design):
@@ -53,35 +57,35 @@ def _climbs_highland(design):
     return "" if result.total_mass_kg < 15 else "It drives far enough, but weighs 15 kg or more."
 
 
-exercise(
-    "00.1", lambda: [_drive_highland(soil=_mare().soil), _drive_highland(slope_deg=0.0)],
+EXERCISES["00.1"] = Exercise(
+    "2 numbers", lambda: [_drive_highland(soil=mare().soil), _drive_highland(slope_deg=0.0)],
     "Count the designs whose range is above 0: once with the soil replaced, once with the slope replaced.",
     {"That is the mission as it stands: replace the soil for the first number, the slope for the second.":
         lambda: [_drive_highland(), _drive_highland()],
      "The other way round: firm soil first, then flat ground.":
-        lambda: [_drive_highland(slope_deg=0.0), _drive_highland(soil=_mare().soil)],
+        lambda: [_drive_highland(slope_deg=0.0), _drive_highland(soil=mare().soil)],
      "Firm soil does not save them all: one has another trouble.": lambda: [6, 6]}, within=0)
 
-exercise(
-    "00.2", _stall_payload, "Evaluate an array of payloads and take the first that stalls.",
+EXERCISES["00.2"] = Exercise(
+    "number", _stall_payload, "Evaluate an array of payloads and take the first that stalls.",
     {"That is what must be added to the payload that the mission has already.":
-        lambda: _stall_payload() - _mare().payload_mass_kg,
+        lambda: _stall_payload() - mare().payload_mass_kg,
      "That is the mass of the whole rover there; the question asks for its payload.":
-        lambda: _first(_loaded()[1].total_mass_kg, _loaded()[1].stalled)}, within=0.01)
+        lambda: first(_loaded()[1].total_mass_kg, _loaded()[1].stalled)}, within=0.01)
 
-exercise(
-    "00.3", lambda: 1 / (1 - _structure_share() * _bus_factor()),
+EXERCISES["00.3"] = Exercise(
+    "number", lambda: 1 / (1 - _structure_share() * bus_factor()),
     "Close the loop by repetition, as in section 3, until the mass no longer changes.",
     {"That is the payload alone. The chassis grows too.": lambda: 1.0,
      "That is what comes on top of the payload's own kilogram; both make the rover heavier.":
-        lambda: 1 / (1 - _structure_share() * _bus_factor()) - 1,
+        lambda: 1 / (1 - _structure_share() * bus_factor()) - 1,
      "One round of the loop is not enough: the chassis grows again for what it has grown.":
-        lambda: 1 + _structure_share() * _bus_factor(),
+        lambda: 1 + _structure_share() * bus_factor(),
      "A kilogram of chassis makes more than a kilogram of rover: overheads and growth come on top.":
         lambda: 1 / (1 - _structure_share())}, within=0.008)
 
-exercise(
-    "00.4", lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.12, wheel_width_m=0.10,
+EXERCISES["00.4"] = Exercise(
+    "Design", lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.12, wheel_width_m=0.10,
                             grouser_count=20,
                             grouser_height_m=0.015, peak_wheel_torque_nm=0.4), "",
     {"for want of grip": lambda: replace(catalog.rover("CADRE-unit"), peak_wheel_torque_nm=5.0),
@@ -138,19 +142,19 @@ def _radius_mm(height_m, count, soil):
     """The smallest radius that climbs 16 deg."""
     radius_m = np.linspace(0.03, 0.2, 3401)
     slope = terramechanics.slope_capability(_ribbed(count, radius_m, height_m), catalog.soil(soil), _LOAD_N)
-    return 1000 * _first(radius_m, slope >= 16)
+    return 1000 * first(radius_m, slope >= 16)
 
 
-exercise(
-    "01.1", lambda: 2 ** (2 / 3), "Section 10 has the power law: how does the sinkage depend on the load?",
+EXERCISES["01.1"] = Exercise(
+    "number", lambda: 2 ** (2 / 3), "Section 10 has the power law: how does the sinkage depend on the load?",
     {"That would be proportion: twice the load, twice the rut. Sinkage is a weaker power of the load.":
         lambda: 2.0,
      "The exponent is upside down.": lambda: 2 ** (3 / 2),
      "That is the exponent; raise the ratio of the loads to it.": lambda: 2 / 3,
      "By so much it stands deeper; the question asks for the ratio.": lambda: 2 ** (2 / 3) - 1}, within=0.01)
 
-exercise(
-    "01.2", lambda: np.ceil(0.6 * 2 * np.pi * 0.10 / 0.015),
+EXERCISES["01.2"] = Exercise(
+    "number", lambda: np.ceil(0.6 * 2 * np.pi * 0.10 / 0.015),
     "The gain is height times number over the circumference. At which whole number does it reach its cap?",
     {"At that number the cap is not quite reached: one more still helps.":
         lambda: np.floor(0.6 * 2 * np.pi * 0.10 / 0.015),
@@ -159,23 +163,23 @@ exercise(
      "The circumference is 2 π r, with the radius and not the diameter.":
         lambda: np.ceil(0.6 * 2 * np.pi * 0.20 / 0.015)}, within=0)
 
-exercise(
-    "01.3", _best, "Multiply pull and speed, divide by torque and angular speed: ω cancels, slip does not. "
+EXERCISES["01.3"] = Exercise(
+    "2 numbers", _best, "Multiply pull and speed, divide by torque and angular speed: ω cancels, slip does not. "
     "Is the grid fine enough?",
     {"That is where the pull is largest. A wheel that pulls hard there hardly moves.":
         lambda: [0.9, float(_efficiency(0.9))],
      "The speed is ω r (1 - s): you left the slip out of it.": lambda: _best(True)}, within=0.04)
 
-exercise(
-    "01.4", _pull_error_ppm,
+EXERCISES["01.4"] = Exercise(
+    "number", _pull_error_ppm,
     "Take the pull with the trapezoid and 100 points, and with 200 Gauss points on each arc; n is 1.1 twice.",
     {"That is the error with the exponent of the notebook's soil: set n to 1.1 for both rules.":
         lambda: _pull_error_ppm(n=1.0),
      "That is the trapezoid with 101 points, that is with 100 intervals; the paper's has 100 points.":
         lambda: _pull_error_ppm(101)}, within=0.005)
 
-exercise(
-    "01.5", lambda: [_radius_mm(0.015, 14, "sourcebook-trafficability"),
+EXERCISES["01.5"] = Exercise(
+    "3 numbers", lambda: [_radius_mm(0.015, 14, "sourcebook-trafficability"),
                      _radius_mm(0.020, 24, "sourcebook-trafficability"),
                      _radius_mm(0.015, 14, "apollo-nominal")],
     "Evaluate the slope capability for an array of radii and take the first that reaches 16 deg.",
@@ -221,15 +225,15 @@ def _digging(wheel):
     return least_squares(misses, (1.0, 0.2)).x
 
 
-exercise(
-    "02.1", lambda: [25.0, 10.0, 1.0, 4.0],
+EXERCISES["02.1"] = Exercise(
+    "4 numbers", lambda: [25.0, 10.0, 1.0, 4.0],
     "An error is model less measured; divide it by the measured pull, or by the load.",
     {"You divided by the model's pull; divide by the measured one.": lambda: [20.0, 100 / 11, 1.0, 4.0],
      "The last two are the errors in newtons of a load of 100 N; the load is 50 N.":
         lambda: [25.0, 10.0, 0.5, 2.0]})
 
-exercise(
-    "02.2", lambda: _factor_of_shift(27.0, 0.80, 0.95), "A finer list of factors between 0.85 and 0.9.",
+EXERCISES["02.2"] = Exercise(
+    "number", lambda: _factor_of_shift(27.0, 0.80, 0.95), "A finer list of factors between 0.85 and 0.9.",
     {"That is the factor above 1; the question asks for the one below.":
         lambda: _factor_of_shift(27.0, 1.05, 1.20),
      "Pull is grip less resistance: it does not shrink in proportion to the shear stress, but faster.":
@@ -237,8 +241,8 @@ exercise(
      "That is the paper's factor. It moves the pull by a little more than the error.": lambda: 0.85},
     within=0.004)
 
-exercise(
-    "02.3", lambda: float(np.subtract(*_reading_interval(1.0)[::-1])),
+EXERCISES["02.3"] = Exercise(
+    "number", lambda: float(np.subtract(*_reading_interval(1.0)[::-1])),
     "`high_pct` less `low_pct` of Ding's row.",
     {"That is the upper end of the interval; its width is asked for.": lambda: _reading_interval(1.0)[1],
      "That is the interval for a reading error of 0.5 N.":
@@ -247,8 +251,8 @@ exercise(
         lambda: float(np.subtract(*_reading_interval(2.0)[::-1]))},
     within=0.03)
 
-exercise(
-    "02.4", lambda: _digging("smooth"), "Fit the sinkage, in mm, at the points of the smooth wheel only.",
+EXERCISES["02.4"] = Exercise(
+    "2 numbers", lambda: _digging("smooth"), "Fit the sinkage, in mm, at the points of the smooth wheel only.",
     {"That fits both wheels at once. Fit the smooth one, then predict the other.":
         lambda: _digging("smooth|grousered"),
      "That fits the grousered wheel. Fit the smooth one.": lambda: _digging("grousered"),
