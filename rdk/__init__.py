@@ -13,6 +13,7 @@ from .terramechanics import Soil, Wheel
 
 _LAZY = {"random_designs": "tradespace", "sweep": "tradespace", "pareto_front": "tradespace",
          "intervals": "tradespace", "attribution": "tradespace", "fronts": "tradespace",
+         "Explorer": "explorer", "write_report": "report",
          "report": None, "tradespace": None, "validation": None, "figures": None, "explorer": None}
 
 __all__ = ["DESIGN_SPACE", "Design", "Model", "Performance", "Scenario", "Soil", "Wheel", "evaluate", "mass", "power",

@@ -154,5 +154,6 @@ def as_python(design, scenario, model, *calls, baseline=None):
 
 def _built(name, kind, values, *more):
     """Source of `name = rdk.kind(...)`; infinity has no literal in Python."""
-    lines = [f"    {field}={value!r},".replace("=inf,", '=float("inf"),') for field, value in values.items()]
+    lines = [f"    {field}={'float(%r)' % str(value) if value in (np.inf, -np.inf) else repr(value)},"
+             for field, value in values.items()]
     return "\n".join([f"{name} = rdk.{kind}(", *lines, *more, ")"]) if lines else f"{name} = rdk.{kind}()"

@@ -9,6 +9,7 @@ import html
 import io
 import threading
 
+import matplotlib
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
@@ -81,9 +82,12 @@ def live(draw, **sliders):
 
     def redraw(change=None):
         with lock:                                       # JupyterLab may call from several threads
-            figure, file = Figure(figsize=(5.2, 3.6)), io.BytesIO()
-            box.sentence = draw(figure, **{name: control.value for name, control in controls.items()})
-            figure.savefig(file, format="png", dpi=100)
+            file = io.BytesIO()
+            with plt.rc_context():
+                matplotlib.rcdefaults()                  # a person's matplotlibrc stays outside
+                figure = Figure(figsize=(5.2, 3.6))
+                box.sentence = draw(figure, **{name: control.value for name, control in controls.items()})
+                figure.savefig(file, format="png", dpi=100)
             box.png, text = base64.b64encode(file.getvalue()).decode(), html.escape(box.sentence)
             picture.value = (f'<img width="520" height="360" alt="{text}" '
                              f'src="data:image/png;base64,{box.png}">')

@@ -189,6 +189,21 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
         "</body></html>", ""])
 
 
+def write_report(design, scenario, path, title=None, notes="", **options):
+    """Write the page of `report` to an HTML file; `options` go to `report`. Returns the path.
+
+    Examples
+    --------
+    >>> import rdk, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     page = write_report(rdk.rover("Rashid-1"), rdk.scenario("polar_prospecting"), folder + "/rover.html")
+    >>> page.name
+    'rover.html'
+    """
+    return write(report(design, scenario, f"A rover for {scenario.name}" if title is None else title, notes, **options),
+                 path)
+
+
 def write(text, path):
     """Write a text to a file in one step: readers see the old file or the new one, never half of it.
 
@@ -200,9 +215,18 @@ def write(text, path):
     Returns
     -------
     Path
+
+    Raises
+    ------
+    OSError
+        If the folder is missing or read-only; the message says what to do.
     """
     path = Path(path)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name[:100], suffix=".part")
+    except OSError as error:
+        raise type(error)(error.errno, f"cannot write {path.name} there ({error.strerror}); give a path in a folder "
+                          "that you may write to", str(path.parent)) from None
     try:
         with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
             file.write(text)

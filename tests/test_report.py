@@ -2,8 +2,11 @@
 
 import base64
 import json
+import os
 import re
 import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from html.parser import HTMLParser
 
@@ -187,6 +190,35 @@ def test_writing_replaces_the_file_in_one_step(tmp_path, monkeypatch):
     assert path.read_text() == "new" and list(tmp_path.iterdir()) == [path]
     with pytest.raises(FileNotFoundError):
         write("x", tmp_path / "no folder" / "page.html")
+
+
+def test_write_report_writes_the_page_of_report_and_names_a_folder_it_cannot_write(tmp_path):
+    path = rdk.write_report(RASHID, MARE, tmp_path / "page.html", draws=20)
+    assert path.read_text(encoding="utf-8") == report(RASHID, MARE, "A rover for equatorial_mare_traverse", draws=20)
+    (tmp_path / "file").write_text("")
+    for folder in "file", "missing":
+        with pytest.raises(OSError, match="cannot write page.html there .*; give a path in a folder"):
+            write("x", tmp_path / folder / "page.html")
+
+
+def test_any_name_survives_in_python_that_was_written():
+    for name in "it's=inf, sieved", 'a"b\\', "$x_1$ =-inf,", "line\nbreak":
+        mission = replace(MARE, name=name, soil=replace(MARE.soil, name=name), traverse_limit_km=np.inf)
+        space = {}
+        exec(rdk.explain.as_python(RASHID, mission, rdk.Model(hub_no_load_speed_rad_s=np.inf)), space)
+        assert replace(space["mission"], problem=MARE.problem) == replace(mission, problem=MARE.problem)
+        assert space["model"].hub_no_load_speed_rad_s == np.inf
+
+
+def test_a_persons_matplotlibrc_does_not_reach_a_live_picture(tmp_path):
+    (tmp_path / "matplotlibrc").write_text("text.usetex: True\nfigure.constrained_layout.use: True\nsavefig.dpi: 300\n"
+                                           "savefig.bbox: tight\n")
+    code = ("import base64, rdk\n"
+            "def draw(figure, x):\n    figure.subplots().set_title('a title')\n    return 'x'\n"
+            "print(base64.b64decode(rdk.figures.live(draw, x=(0, 1, 1, 0, 'x')).png)[16:24].hex())")
+    done = subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, timeout=120,
+                          env={**os.environ, "MATPLOTLIBRC": str(tmp_path), "MPLBACKEND": "agg"})
+    assert done.stdout.strip() == f"{520:08x}{360:08x}", done.stderr
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium")
