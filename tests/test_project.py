@@ -26,35 +26,43 @@ def test_readme_gives_each_command_for_both_kinds_of_machine():
     unix, windows = blocks("bash"), blocks("powershell")
     translated = [command.replace("py -3", "python3").replace("; ", " && ").replace("\\", "/")
                   .replace(".venv/Scripts/", ".venv/bin/") for command in windows]
-    assert translated == unix and len(unix) == 2
-    assert unix[0].endswith("-m jupyterlab --ServerApp.root_dir=. notebooks/00_start_here.ipynb")
-    assert unix[1].endswith("-m pytest")
+    assert translated == unix[:2] and len(unix) == 3
+    # root may run it, and where no browser opens, the address is the last thing printed
+    assert "-m jupyterlab --allow-root --log-level=ERROR --ServerApp.root_dir=." in unix[0]
+    assert unix[0].endswith("default_url=/lab/tree/notebooks/00_start_here.ipynb")
+    assert unix[1].endswith("-m pytest") and "--resolution lowest-direct" in unix[2]
+
+
+def test_the_workflow_runs_the_readmes_test_command():
+    steps = yaml.safe_load((REPO / ".github/workflows/test.yml").read_text(encoding="utf-8"))["jobs"]["test"]["steps"]
+    assert [step["run"] for step in steps if "run" in step] == [blocks("bash")[1], blocks("powershell")[1]]
 
 
 @pytest.mark.skipif(shutil.which("awk") is None, reason=".ci/run is for Debian")
 def test_ci_runs_the_readmes_test_command():
     # what .ci/run cuts out of the README, cut out by the same awk program
-    program = re.search(r"awk '(.*?)' README\.md", (REPO / ".ci/run").read_text(), re.DOTALL)[1]
+    program = re.search(r"awk '(.*?)' README\.md", (REPO / ".ci/run").read_text(encoding="utf-8"), re.DOTALL)[1]
     cut = subprocess.check_output(["awk", program, REPO / "README.md"], text=True)
     assert cut == blocks("bash")[1] + "\n"
 
 
 def test_links_in_the_pages_resolve():
-    for name in "README.md", "data/README.md", "notebooks/README.md", "notebooks/glossary.md", "CONTRIBUTING.md":
+    for name in ("README.md", "data/README.md", "notebooks/README.md", "notebooks/glossary.md",
+                 ".github/CONTRIBUTING.md"):
         page = REPO / name
         targets = re.findall(r"\]\(([^)\s#]+)\)", page.read_text(encoding="utf-8"))
         assert not [t for t in targets if not t.startswith("https:") and not (page.parent / t).exists()]
 
 
 def test_requirements_pin_exact_versions_and_nothing_else():
-    *pins, last = (REPO / "requirements.txt").read_text().splitlines()
+    *pins, last = (REPO / "requirements.txt").read_text(encoding="utf-8").splitlines()
     assert last == "-e ."
     for line in pins:
         assert re.fullmatch(r"[a-z0-9-]+==[a-z0-9.]+( ; .+)?", line), line
 
 
 def test_requirements_hold_every_dependency_within_its_bounds():
-    *lines, _ = (REPO / "requirements.txt").read_text().splitlines()
+    *lines, _ = (REPO / "requirements.txt").read_text(encoding="utf-8").splitlines()
     pins = list(map(Requirement, lines))
     loose = sum(PROJECT["optional-dependencies"].values(), PROJECT["dependencies"])
     for wanted in map(Requirement, loose):
