@@ -5,8 +5,8 @@
 >>> result.feasible
 True
 """
-from . import mass, power, terramechanics, thermal
-from .catalog import rover, rover_names, scenario, scenario_names, soil, soil_names
+from . import mass, power, sky, terramechanics, thermal
+from .catalog import rover, rover_names, scenario, scenario_names, skyline, skyline_sites, soil, soil_names
 from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import Performance, evaluate
 from .terramechanics import Soil, Wheel
@@ -17,7 +17,7 @@ _LAZY = {"random_designs": "tradespace", "sweep": "tradespace", "pareto_front": 
          "report": None, "tradespace": None, "validation": None, "figures": None, "explorer": None}
 
 __all__ = ["DESIGN_SPACE", "Design", "Model", "Performance", "Scenario", "Soil", "Wheel", "evaluate", "mass", "power",
-           "rover", "rover_names", "scenario", "scenario_names", "soil", "soil_names", "terramechanics", "thermal",
+           "rover", "rover_names", "scenario", "scenario_names", "sky", "skyline", "skyline_sites", "soil", "soil_names", "terramechanics", "thermal",
            *_LAZY]
 
 

@@ -6,10 +6,12 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import difflib
 import functools
 from pathlib import Path
 
 from .design import Design, Scenario, Problem
+from .sky import Skyline
 from .terramechanics import Soil
 
 DATA = Path(__file__).resolve().parent.parent / "data"
@@ -202,3 +204,50 @@ def rover_row(name):
     if name not in vectors:
         raise ValueError(f"no rover {name!r}; choose from {', '.join(vectors)}")
     return dict(vectors[name])
+
+
+@functools.cache
+def skyline_sites():
+    """The sites that `skyline` knows, with what is known of each.
+
+    Returns
+    -------
+    dict of str to dict
+        Site -> label, latitude_deg, longitude_deg, ground_height_m, map_step_m, heights_m (above ground).
+    """
+    found = {}
+    for row in _rows("skyline_sites.csv", DATA):
+        numbers = ("latitude_deg", "longitude_deg", "ground_height_m", "map_step_m")
+        site = found.setdefault(row["site"], dict(label=row["label"], **{name: float(row[name]) for name in numbers},
+                                                  heights_m=()))
+        site["heights_m"] += (float(row["height_m"]),)
+    return found
+
+
+def skyline(site, height_m=2):
+    """The skyline of a site near the south pole, seen from a height above its ground.
+
+    Parameters
+    ----------
+    site : str
+        One of `skyline_sites()`.
+    height_m : float
+        1, 2 or 10: heights in between are refused, not interpolated.
+
+    Examples
+    --------
+    >>> skyline("connecting_ridge_spot_1", 10)
+    <Skyline connecting_ridge_spot_1, 10 m: -3.9 to -0.9 deg>
+    """
+    sites = skyline_sites()
+    if site not in sites:
+        near = difflib.get_close_matches(str(site), sites, 1)
+        raise ValueError(f"no site {site!r}; " + (f"did you mean {near[0]!r}? " if near else "") + "choose from "
+                         + ", ".join(sites))
+    if height_m not in sites[site]["heights_m"]:
+        heights = ", ".join(f"{height:g}" for height in sites[site]["heights_m"])
+        raise ValueError(f"height_m of a tabulated skyline must be one of {heights}; got {height_m!r}")
+    rows = _rows("skylines.csv", DATA)
+    return Skyline([float(row["azimuth_deg"]) for row in rows], [float(row[f"{site}_{height_m:g}m"]) for row in rows],
+                   sites[site]["latitude_deg"], sites[site]["longitude_deg"], float(height_m),
+                   f"{site}, {height_m:g} m")

@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import fnmatch
 import re
 from pathlib import Path
 
@@ -12,10 +13,12 @@ import rdk
 DATA = Path(__file__).parents[1] / "data"
 ROWS = {"soils.csv": 11, "scenarios.csv": 14, "rovers.csv": 13, "flown.csv": 2, "single_wheel.csv": 27,
         "constants.csv": 58, "paper_targets.csv": 69, "studies.csv": 4,
-        "uncertainties.csv": 17}
+        "uncertainties.csv": 17, "skyline_sites.csv": 48, "skylines.csv": 360, "published_light.csv": 6,
+        "subsolar_points.csv": 21, "sun_horizons_2024.csv": 96, "ridge_route.csv": 136,
+        "ridge_route_skylines.csv": 180, "ridge_light_2026.csv": 61, "slope_histograms.csv": 45}
 UNITS = {"_deg": "deg", "_kn_m_n1": "kN/m^(n+1)", "_kn_m_n2": "kN/m^(n+2)", "_kpa": "kPa", "_mm": "mm",
          "_kg_m3": "kg/m3", "_kg": "kg", "_km": "km", "_days": "Earth days", "_w": "W", "_wh": "Wh",
-         "_nm": "N m", "_m2": "m2", "_n": "N", "_m": "m", "_c": "degC"}
+         "_nm": "N m", "_m2": "m2", "_n": "N", "_m": "m", "_c": "degC", "_pct": "%", "_date": "days"}
 NUMBERS = {"number": r"-?\d+(\.\d+)?", "integer": r"\d+"}
 
 
@@ -41,8 +44,18 @@ def read(name):
     return header, [dict(zip(header, row)) for row in rows]
 
 
+def spread(columns, header):
+    """The dictionary's columns with those of a pattern, such as `*_pct`, in its place, in the order of the header."""
+    found = {name: (pattern, *rule) for pattern, rule in columns.items() for name in fnmatch.filter(header, pattern)}
+    missing = {name: (name, *rule) for name, rule in columns.items() if "*" not in name and name not in found}
+    plain = list(columns) if not any("*" in name for name in columns) else header
+    return {name: (found | missing)[name] for name in plain if name in found | missing}
+
+
 SCHEMA = dictionary()
 TABLES = {name: read(name)[1] for name in ROWS}
+PATTERNS = {name for name in ROWS if any("*" in column for column in SCHEMA[name])}
+SPREAD = {name: spread(SCHEMA[name], read(name)[0]) for name in ROWS}
 CELLS = [(name, column) for name in ROWS for column in SCHEMA[name]]
 BIBLIOGRAPHY = re.findall(r"^@\w+\{([^,\s]+),", (DATA / "references.bib").read_text(encoding="utf-8"), re.M)
 
@@ -69,13 +82,15 @@ def test_the_dictionary_names_every_file_and_the_reader_rejects():
 @pytest.mark.parametrize("name", ROWS)
 def test_header_and_length(name):
     header, rows = read(name)
-    assert header == list(SCHEMA[name])
+    assert header == list(SPREAD[name])
     assert len(rows) == ROWS[name]
 
 
 @pytest.mark.parametrize("name, column", CELLS)
 def test_unit_is_the_suffix_of_the_name(name, column):
     unit, kind, _, _ = SCHEMA[name][column]
+    if column.endswith("*") or re.search(r"\*_?\d*m$", column):
+        return                                           # the name says where, not what
     suffix = next((s for s in sorted(UNITS, key=len, reverse=True) if column.endswith(s)), None)
     if kind not in ("number", "integer", "range"):
         assert unit == ""
@@ -86,7 +101,8 @@ def test_unit_is_the_suffix_of_the_name(name, column):
 @pytest.mark.parametrize("name, column", CELLS)
 def test_every_value_has_its_type_and_is_allowed(name, column):
     _, kind, optional, rule = SCHEMA[name][column]
-    values = [row[column] for row in TABLES[name]]
+    columns = [spread for spread, (pattern, *_) in SPREAD[name].items() if pattern == column]
+    values = [row[spread] for row in TABLES[name] for spread in columns]
     assert optional or all(values), "an empty cell"
     assert not all(values) or not optional or kind == "list" or column == "note", "optional, but never empty"
     for value in filter(None, values):
@@ -110,9 +126,13 @@ def test_every_value_has_its_type_and_is_allowed(name, column):
 
 
 def test_every_source_is_in_the_bibliography():
-    assert len(set(BIBLIOGRAPHY)) == len(BIBLIOGRAPHY) == 97
+    assert len(set(BIBLIOGRAPHY)) == len(BIBLIOGRAPHY) == 108
+    for name in PATTERNS:                                # their sources stand above their columns
+        section = (DATA / "README.md").read_text(encoding="utf-8").partition(f"\n## {name}\n")[2].partition("\n|")[0]
+        named = re.findall(r"`(\w+)`", section.partition("Sources")[2])
+        assert named and set(named) <= set(BIBLIOGRAPHY), name
     for name, rows in TABLES.items():
-        for row in rows:
+        for row in [] if name in PATTERNS else rows:
             assert row["source"] and set(entries(row["source"])) <= set(BIBLIOGRAPHY), (name, row["source"])
 
 
@@ -206,3 +226,20 @@ def test_model_defaults_are_the_constants_of_the_table():
     for row in TABLES["constants.csv"]:
         if row["kind"] == "soil default":
             assert defaults[row["name"]] == float(row["value"])
+
+
+def test_skylines_belong_to_their_sites():
+    seen = {f"{row['site']}_{row['height_m']}m" for row in TABLES["skyline_sites.csv"]}
+    assert set(TABLES["skylines.csv"][0]) == {"azimuth_deg"} | seen and len(seen) == ROWS["skyline_sites.csv"]
+    assert [float(row["azimuth_deg"]) for row in TABLES["skylines.csv"]] == list(range(360))
+    for row in TABLES["skyline_sites.csv"]:              # some hours are lit in part
+        assert float(row["lit_pct"]) + float(row["dark_pct"]) <= 100
+    length = max(float(row["distance_m"]) for row in TABLES["ridge_route.csv"])
+    places = [float(column[3:-1]) for column in TABLES["ridge_route_skylines.csv"][0] if column != "azimuth_deg"]
+    assert places == sorted(places) and places[0] == 0 and abs(places[-1] - length) < 1
+
+
+def test_slope_classes_hold_every_cell():
+    for column in set(TABLES["slope_histograms.csv"][0]) - {"slope_from_deg", "slope_to_deg"}:
+        total = sum(float(row[column]) for row in TABLES["slope_histograms.csv"])
+        assert abs(total - 100) < 0.05, column               # printed with three decimals, 45 classes
