@@ -17,7 +17,8 @@ _LAZY = {"random_designs": "tradespace", "sweep": "tradespace", "pareto_front": 
          "report": None, "tradespace": None, "validation": None, "figures": None, "explorer": None}
 
 __all__ = ["DESIGN_SPACE", "Design", "Model", "Performance", "Scenario", "Soil", "Wheel", "evaluate", "mass", "power",
-           "rover", "rover_names", "scenario", "scenario_names", "sky", "skyline", "skyline_sites", "soil", "soil_names", "terramechanics", "thermal",
+           "rover", "rover_names", "scenario", "scenario_names", "sky", "skyline", "skyline_sites", "soil",
+           "soil_names", "terramechanics", "thermal",
            *_LAZY]
 
 

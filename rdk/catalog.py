@@ -6,10 +6,10 @@ from __future__ import annotations
 
 import csv
 import dataclasses
-import difflib
 import functools
 from pathlib import Path
 
+from ._fields import unknown
 from .design import Design, Scenario, Problem
 from .sky import Skyline
 from .terramechanics import Soil
@@ -241,10 +241,8 @@ def skyline(site, height_m=2):
     """
     sites = skyline_sites()
     if site not in sites:
-        near = difflib.get_close_matches(str(site), sites, 1)
-        raise ValueError(f"no site {site!r}; " + (f"did you mean {near[0]!r}? " if near else "") + "choose from "
-                         + ", ".join(sites))
-    if height_m not in sites[site]["heights_m"]:
+        raise unknown("no site", site, sites)
+    if isinstance(height_m, str) or height_m not in sites[site]["heights_m"]:
         heights = ", ".join(f"{height:g}" for height in sites[site]["heights_m"])
         raise ValueError(f"height_m of a tabulated skyline must be one of {heights}; got {height_m!r}")
     rows = _rows("skylines.csv", DATA)

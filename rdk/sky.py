@@ -105,7 +105,7 @@ def julian_date(utc):
 def subsolar_point(julian_date):
     """Point of the Moon with the sun overhead, in the mean-Earth frame.
 
-    Against DE440 from 2015 to 2040 it is within 0.01 deg in latitude and 0.06 deg in longitude.
+    At 21 dates from 2015 to 2043 it is within 0.01 deg in latitude and 0.06 deg in longitude of DE440.
 
     Parameters
     ----------
