@@ -140,7 +140,8 @@ def stance(total_mass_kg: Values, wheels_mass_kg: Values, wheel_radius_m: Values
 
     The rover fills an envelope of wheelbase and two radii, by track and one width, at the density of published
     envelopes (110 to 230 kg/m3). The body reaches from the belly (1.2 radii up on a rigid rover, 2 under a
-    rocker-bogie) to its top, at least 5 cm higher. The wheels' mass sits at the axles, all else in the middle of the body.
+    rocker-bogie) to its top, at least 5 cm higher. The wheels' mass sits at the axles, all else in the middle of the
+    body.
 
     Parameters
     ----------
