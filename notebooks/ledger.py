@@ -17,7 +17,8 @@ from rdk import _contact as contact
 from rdk import catalog, rediscovery, rules
 from rdk.mission import evaluate
 from rdk.sampling import random_designs
-from rdk.tradespace import fronts, pareto_front
+from rdk.studies import fronts
+from rdk.tradespace import pareto_front
 from rdk.validation import (
     EXPERIMENTS, flown_rovers, load_transfer, published_masses, published_masses_summary, pull_shift, single_wheel,
     single_wheel_summary)

@@ -11,8 +11,8 @@ from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import Performance, evaluate
 from .terramechanics import Soil, Wheel
 
-_LAZY = {"random_designs": "tradespace", "sweep": "tradespace", "pareto_front": "tradespace",
-         "intervals": "tradespace", "attribution": "tradespace", "fronts": "tradespace",
+_LAZY = {"random_designs": "sampling", "sweep": "sampling", "pareto_front": "tradespace",
+         "intervals": "sampling", "attribution": "sampling", "fronts": "studies",
          "Explorer": "explorer", "write_report": "report",
          "report": None, "tradespace": None, "validation": None, "figures": None, "explorer": None}
 

@@ -10,8 +10,9 @@ from . import catalog
 from ._fields import check
 from .design import DESIGN_SPACE, Design, Model
 from .mission import evaluate, mass_of
-from .rules import beaten, fronts_at, minimised, place
+from .rules import fronts_at, place
 from .sampling import random_designs
+from .tradespace import beaten, minimised
 
 REDISCOVERED = {"Tenacious": "mare_micro", "CADRE-unit": "polar_micro", "Rashid-1": "mare_micro",
                 "Pragyan": "polar_micro", "MoonRanger": "polar_micro", "Yutu-2": "mare_micro"}

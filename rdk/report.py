@@ -160,7 +160,7 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
     if baseline is None:
         nearest = int(np.abs(np.log(rovers.total_mass_kg / result.total_mass_kg)).argmin())
         baseline, baseline_name = fleet[nearest], names[nearest]
-    shares = attribution(design, baseline, scenario, model)
+    shares = attribution(design, baseline, scenario, model=model)
     if why not in shares.contributions:
         raise ValueError(f"why: no metric {why!r}; choose from {', '.join(shares.contributions)}")
     drawn = [

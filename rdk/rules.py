@@ -19,7 +19,7 @@ from .design import DESIGN_SPACE, Model
 from .mission import evaluate, mass_of
 from .sampling import METRICS, decode, drawn, perturbed, replaced
 from .terramechanics import wheel_forces
-from .tradespace import search
+from .tradespace import beaten, minimised, pareto_front
 from .validation import single_wheel_conditions
 
 SHEAR_SCALES = (0.70, 0.85, 1.00, 1.15, 1.30)
@@ -118,7 +118,7 @@ def fronts_at(scenario, generations, options):
         if progress.generation in generations:
             fronts.append(progress.front())
 
-    search(scenario, generations=generations[-1], on_generation=look, **options)
+    pareto_front(scenario, generations=generations[-1], on_generation=look, warn=False, **options)
     return fronts
 
 
@@ -216,17 +216,6 @@ def dominated(front, others):
     mine = minimised(front.performance, front.problem.objectives)
     theirs = np.concatenate([minimised(other.performance, front.problem.objectives) for other in others])
     return beaten(mine, theirs)
-
-
-def beaten(mine, theirs):
-    """Which points (rows, all objectives minimised) some point of theirs dominates."""
-    return ((theirs[:, None] <= mine).all(-1) & (theirs[:, None] < mine).any(-1)).any(0)
-
-
-def minimised(performance, objectives):
-    """Objectives as columns, each with the sign that makes less better."""
-    return np.stack([np.atleast_1d(getattr(performance, name)) * (-1 if way == "max" else 1)
-                     for name, way in objectives.items()], axis=1)
 
 
 # ---- scenario families -------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from . import catalog
-from ._fields import check
+from ._fields import Shown, check, unknown
 from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import Performance, evaluate
 from .terramechanics import Soil
@@ -18,11 +18,32 @@ from .terramechanics import Soil
 _NORMAL_95 = 1.6448536269514722                          # 95 % point of the standard normal
 METRICS = tuple(f.name for f in dataclasses.fields(Performance) if f.name not in ("mass", "log"))
 """The Performance fields that a study can use as objective, constraint or read-out."""
+READINGS = ("range_km", "total_mass_kg", "slope_capability_deg", "slip", "energy_balance_pct")   # of a short table
+
+
+def demands(wanted, argument: str = "constraints") -> tuple:
+    """Demands like ("range_km", ">=", 30), checked: fields of Performance, limits that do not contradict each other."""
+    if not isinstance(wanted, (list, tuple)) or not all(isinstance(c, (list, tuple)) for c in wanted):
+        raise ValueError(f"{argument} must be a list of (field, '>=' or '<=', limit); got {wanted!r}")
+    limits = {}
+    for demand in wanted:
+        if len(demand) != 3 or demand[1] not in (">=", "<="):
+            raise ValueError(f"{argument} must be like ('range_km', '>=', 0.1); got {demand!r}")
+        name, sign, limit = demand
+        if name not in METRICS:
+            raise unknown(f"{argument}: no Performance field", name, METRICS)
+        both = limits.setdefault(name, {">=": -math.inf, "<=": math.inf})
+        limit = check(f"{argument}: limit of {name}", limit, scalar=True)
+        both[sign] = max(both[sign], limit) if sign == ">=" else min(both[sign], limit)
+    for name, both in limits.items():
+        if both[">="] > both["<="]:
+            raise ValueError(f"{argument} contradict each other: {name} >= {both['>=']:g} and <= {both['<=']:g}")
+    return tuple(tuple(demand) for demand in wanted)
 
 
 # ---- designs and genes ----------------------------------------------------------------------------------------
 
-def random_designs(count, seed=None, bounds=None):
+def random_designs(count: int, seed: int | None = None, bounds: dict | None = None) -> Design:
     """Designs drawn uniformly from the design space; grouser counts whole, 4 or 6 wheels with equal chance.
 
     Parameters
@@ -61,7 +82,7 @@ def _limits(bounds):
     rules = {f.name: f.metadata for f in dataclasses.fields(Design)}
     for name, pair in (bounds or {}).items():
         if name not in limits:
-            raise ValueError(f"bounds: no design variable {name!r}; choose from {', '.join(limits)}")
+            raise unknown("bounds: no design variable", name, list(limits))
         if np.shape(pair) != (2,):
             raise ValueError(f"bounds of {name} must be a pair (low, high); got {pair!r}")
         low, high = (check(f"bounds of {name}", x, **rules[name]) for x in pair)
@@ -71,7 +92,7 @@ def _limits(bounds):
     return np.array(list(limits.values()), float).T
 
 
-def decode(genes, bounds=None):
+def decode(genes: np.ndarray, bounds: dict | None = None) -> Design:
     """Designs from genes in the unit cube, shape (n, 11): scaled, grouser count rounded, wheel count thresholded.
 
     Every design that the optimiser sees can be built: 4 or 6 wheels, a whole number of grousers.
@@ -87,7 +108,7 @@ def decode(genes, bounds=None):
     return Design(**values)
 
 
-def encode(designs, bounds=None):
+def encode(designs: Design, bounds: dict | None = None) -> np.ndarray:
     """Genes of designs, shape (n, 11), clipped to the unit cube; the inverse of `decode` up to rounding."""
     low, high = _limits(bounds)
     columns = np.broadcast_arrays(*(np.atleast_1d(getattr(designs, name)) for name in DESIGN_SPACE))
@@ -97,8 +118,8 @@ def encode(designs, bounds=None):
 
 # ---- sweeps ---------------------------------------------------------------------------------------------------
 
-@dataclasses.dataclass(frozen=True)
-class Sweep:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Shown):
     """A sweep over one or two fields.
 
     Attributes
@@ -120,6 +141,11 @@ class Sweep:
             frame.insert(i, name, grid.ravel(), allow_duplicates=True)
         return frame
 
+    def _summary(self):
+        frame = self.to_frame()
+        shown = [*range(len(self.fields)), *map(list(frame.columns).index, READINGS)]
+        return f"Sweep of {len(frame)} points over {' and '.join(self.fields)}", frame.iloc[:, shown]
+
 
 def _single(**records):
     """Refuse records that hold arrays."""
@@ -128,22 +154,21 @@ def _single(**records):
             raise ValueError(f"{name} must be a single one; got arrays of shape {record.shape}")
 
 
-def replaced(design, scenario, model, changes):
+def replaced(design: Design, scenario: Scenario, model: Model, changes: dict) -> tuple[Design, Scenario, Model]:
     """Design, scenario and model with fields changed, each found by its name in Design, Scenario, Soil or Model."""
     groups = {Design: {}, Scenario: {}, Soil: {}, Model: {}}
     names = {kind: {f.name for f in dataclasses.fields(kind) if f.metadata} for kind in groups}
     for name, value in changes.items():
         kind = next((kind for kind, known in names.items() if name in known), None)
         if kind is None:
-            raise ValueError(f"no field {name!r} in Design, Scenario, Soil or Model; choose from "
-                             + ", ".join(sorted(set().union(*names.values()))))
+            raise unknown("Design, Scenario, Soil and Model have no field", name, sorted(set().union(*names.values())))
         groups[kind][name] = value
     soil = dataclasses.replace(scenario.soil, **groups[Soil])
     return (dataclasses.replace(design, **groups[Design]), dataclasses.replace(scenario, soil=soil, **groups[Scenario]),
             dataclasses.replace(model, **groups[Model]))
 
 
-def sweep(design, scenario, over, model=Model()):
+def sweep(design: Design, scenario: Scenario, over: dict, *, model: Model = Model()) -> Sweep:
     """Performance along one field or over a grid of two, in one evaluation.
 
     Parameters
@@ -337,8 +362,8 @@ def intervals(design, scenario, draws=500, seed=0, level=0.9, model=Model(), tab
 
 # ---- attribution ----------------------------------------------------------------------------------------------
 
-@dataclasses.dataclass(frozen=True)
-class Attribution:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Attribution(Shown):
     """Shapley values: what each design variable contributes to the difference of two designs.
 
     Attributes
@@ -357,8 +382,12 @@ class Attribution:
         import pandas as pd
         return pd.DataFrame(self.contributions, index=list(DESIGN_SPACE))
 
+    def _summary(self):
+        frame = self.to_frame()
+        return "Attribution: what each variable adds to the baseline", frame[[n for n in READINGS if n in frame]]
 
-def attribution(design, baseline, scenario, model=Model()):
+
+def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: Model = Model()) -> Attribution:
     """Exact Shapley values of each metric's difference between two designs, over the eleven design variables.
 
     Every mixture of the two designs is evaluated, 2^k of them in one call where k variables differ, and each variable is

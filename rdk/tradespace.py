@@ -1,40 +1,33 @@
-"""Trade-space studies: Pareto fronts by NSGA-II, and many of them at once.
+"""Pareto fronts by NSGA-II.
 
 The optimiser is pymoo's with the paper's settings, on the evaluator itself. What needs no optimiser - random designs,
-sweeps, intervals, attribution - comes from `sampling` and is offered here too.
+sweeps, intervals, attribution - is in `sampling`.
 """
 from __future__ import annotations
 
 import dataclasses
-import hashlib
-import json
 import math
-import os
-import queue
-import re
 import warnings
+from collections.abc import Callable, Sequence
 from functools import cached_property
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from ._fields import check
-from .design import DESIGN_SPACE, Design, Model, Scenario, Problem
+from ._fields import Shown, check, unknown
+from .design import DESIGN_SPACE, Design, Model, Problem, Scenario
 from .mission import Performance, evaluate
-from .sampling import METRICS, attribution, decode, encode, intervals, random_designs, sweep
-
-__all__ = ["Front", "Progress", "attribution", "decode", "encode", "fronts", "hypervolume", "intervals", "pareto_front",
-           "random_designs", "sweep"]
+from .sampling import METRICS, decode, demands, encode
 
 FAILED = 1e9                                             # objective and violation of a lane without a solution
-RANKED_DECIMALS = 8                                      # objectives are compared no finer: see `_nsga2`
+RANKED_DECIMALS = 8                                      # objectives are compared no finer: see `nsga2`
 HYPERVOLUME_SCALES = {"range_km": None, "total_mass_kg": 80.0, "slope_capability_deg": 45.0}    # None: the limit
 HYPERVOLUME_REFERENCE = 1.05                             # in every scaled objective
+MOST_GENERATIONS, PATIENCE, LEAST_GAIN = 1000, 20, 1e-4  # of a search that stops when it has converged
 
 
-@dataclasses.dataclass(frozen=True)
-class Front:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Front(Shown):
     """Non-dominated designs of a search, by rising mass; of designs alike in every objective, one.
 
     Attributes
@@ -57,31 +50,54 @@ class Front:
     scenario: Scenario
     model: Model
     problem: Problem
-    objective_history: tuple = dataclasses.field(repr=False, default=())
+    objective_history: tuple = ()
     message: str = ""
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.designs)
 
     @cached_property
-    def history(self):
+    def history(self) -> np.ndarray:
         """Normalised hypervolume after each generation."""
         return np.array([hypervolume(F, self.problem.objectives, self.scenario) for F in self.objective_history])
+
+    def hypervolume(self) -> float:
+        """Normalised hypervolume of the designs; NaN where an objective has no published scale."""
+        objectives = self.problem.objectives
+        return hypervolume(minimised(self.performance, objectives), objectives, self.scenario)
 
     def to_frame(self):
         """A pandas DataFrame: one row a design, its variables first, then its performance."""
         import pandas as pd
         return pd.concat([self.designs.to_frame(), self.performance.to_frame()], axis=1)
 
+    def _summary(self):
+        fields = dict.fromkeys([*self.problem.objectives, "wheel_count", "wheel_radius_m", "battery_capacity_wh"])
+        message = f"; {self.message}" if self.message else ""
+        return f"Front: {len(self)} designs on {self.scenario.name}{message}", self.to_frame()[list(fields)]
+
 
 class Progress(NamedTuple):
     """What `on_generation` receives: the generation just finished, of how many, and the front so far on demand."""
     generation: int
     generations: int
-    front: object
+    front: Callable[[], Front]
 
 
-def hypervolume(minimised, objectives, scenario):
+# ---- dominance and hypervolume --------------------------------------------------------------------------------
+
+def minimised(performance: Performance, objectives: dict) -> np.ndarray:
+    """Objectives as columns, shape (n, m), each with the sign that makes less better."""
+    return np.stack([np.atleast_1d(getattr(performance, name)) * (-1.0 if way == "max" else 1.0)
+                     for name, way in objectives.items()], axis=1)
+
+
+def beaten(mine: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+    """Which points (rows, all objectives minimised) some point of theirs dominates."""
+    return ((theirs[:, None] <= mine).all(-1) & (theirs[:, None] < mine).any(-1)).any(0)
+
+
+def hypervolume(minimised: np.ndarray, objectives: dict, scenario: Scenario) -> float:
     """Normalised hypervolume of objective vectors.
 
     Each objective is scaled to [0, 1] - range by the traverse limit, mass by 80 kg, slope capability by 45 deg, as in
@@ -100,49 +116,50 @@ def hypervolume(minimised, objectives, scenario):
     float
         NaN where an objective has no published scale, or range no limit.
     """
-    scales = [HYPERVOLUME_SCALES.get(name, math.nan) or scenario.traverse_limit_km for name in objectives]
-    if not all(0 < scale < math.inf for scale in scales):
+    scales = np.array([HYPERVOLUME_SCALES.get(name, math.nan) or scenario.traverse_limit_km for name in objectives])
+    if not ((scales > 0) & (scales < math.inf)).all():
         return math.nan
-    if not len(minimised):
+    return _volume(np.asarray(minimised) / scales - [-1.0 if d == "max" else 0.0 for d in objectives.values()])
+
+
+def _volume(scaled):
+    """Hypervolume of points in the unit cube, below the reference."""
+    if not len(scaled):
         return 0.0
     from pymoo.indicators.hv import HV
-    best = np.array([-1.0 if d == "max" else 0.0 for d in objectives.values()])
-    scaled = np.clip(np.asarray(minimised) / np.array(scales) - best, 0, 1)
-    return float(HV(ref_point=np.full(len(scales), HYPERVOLUME_REFERENCE))(scaled))
+    return float(HV(ref_point=np.full(scaled.shape[1], HYPERVOLUME_REFERENCE))(np.clip(scaled, 0, 1)))
 
 
-def posed(scenario, objectives=None, constraints=None, seed=None):
+def _gain(old, new, objectives, scenario):
+    """Hypervolume that `new` has more than `old`; objectives without a published scale span the unit cube."""
+    if len(old) and math.isnan(hypervolume(old, objectives, scenario)):
+        span = np.ptp(new, axis=0)
+        span[span == 0] = abs(new[0])[span == 0]         # a single point: its own size
+        scale = np.where(span > 0, span, 1.0)
+        return _volume((new - new.min(0)) / scale) - _volume((old - new.min(0)) / scale)
+    return hypervolume(new, objectives, scenario) - hypervolume(old, objectives, scenario)
+
+
+# ---- one front ------------------------------------------------------------------------------------------------
+
+def posed(scenario: Scenario, objectives=None, constraints=None, seed=None) -> tuple[Scenario, Problem]:
     """The scenario and the Problem that a search uses: the scenario's own problem, with what the caller changes."""
+    if not isinstance(scenario, Scenario):
+        raise TypeError(f"scenario must be a Scenario, such as rdk.scenario('polar_prospecting'); got {scenario!r}")
+    if scenario.shape:
+        raise ValueError(f"scenario must be a single mission for a search; got arrays of shape {scenario.shape}")
     problem = scenario.problem
     if objectives is not None and not isinstance(objectives, dict):
         raise ValueError(f"objectives must be a dictionary like {{'range_km': 'max'}}; got {objectives!r}")
-    if constraints is not None and not (isinstance(constraints, (list, tuple))
-                                        and all(isinstance(c, (list, tuple)) for c in constraints)):
-        raise ValueError(f"constraints must be a list of (field, '>=' or '<=', limit); got {constraints!r}")
     objectives = problem.objectives if objectives is None else dict(objectives)
-    constraints = problem.constraints if constraints is None else tuple(tuple(c) for c in constraints)
     if not objectives:
         raise ValueError("objectives must name at least one Performance field; got none")
     for name, direction in objectives.items():
         if name not in METRICS:
-            raise ValueError(f"objectives: no Performance field {name!r}; choose from {', '.join(METRICS)}")
+            raise unknown("objectives: no Performance field", name, METRICS)
         if direction not in ("max", "min"):
             raise ValueError(f"objectives: direction of {name} must be 'max' or 'min'; got {direction!r}")
-    limits = {}
-    for constraint in constraints:
-        if len(constraint) != 3 or constraint[1] not in (">=", "<="):
-            raise ValueError(f"constraints must be like ('range_km', '>=', 0.1); got {constraint!r}")
-        name, sign, limit = constraint
-        if name not in METRICS:
-            raise ValueError(f"constraints: no Performance field {name!r}; choose from {', '.join(METRICS)}")
-        limits.setdefault(name, {">=": -math.inf, "<=": math.inf})
-        tighter = max if sign == ">=" else min
-        limits[name][sign] = tighter(limits[name][sign], check(f"constraints: limit of {name}", limit, scalar=True))
-    for name, both in limits.items():
-        if both[">="] > both["<="]:
-            raise ValueError(f"constraints contradict each other: {name} >= {both['>=']:g} and <= {both['<=']:g}")
-    if scenario.shape:
-        raise ValueError(f"scenario must be a single mission for a search; got arrays of shape {scenario.shape}")
+    constraints = demands(problem.constraints if constraints is None else constraints)
     if scenario.required_obstacle_height_m > 0:
         constraints += (("obstacle_capability_m", ">=", scenario.required_obstacle_height_m),)
     if problem.traverse_limit_km is not None:
@@ -150,8 +167,11 @@ def posed(scenario, objectives=None, constraints=None, seed=None):
     return scenario, Problem(objectives, constraints, problem.traverse_limit_km, problem.seed if seed is None else seed)
 
 
-def pareto_front(scenario, population=50, generations=60, seed=None, objectives=None, constraints=None, model=Model(),
-                 start=None, on_generation=None, bounds=None):
+def pareto_front(scenario: Scenario, *, population: int | None = None, generations: int | str = 60,
+                 seed: int | None = None, objectives: dict | None = None, constraints: Sequence | None = None,
+                 model: Model = Model(), start: Front | Design | str | None = None,
+                 on_generation: Callable[[Progress], object] | None = None, bounds: dict | None = None,
+                 warn: bool = True) -> Front:
     """Pareto front of a mission by NSGA-II on the evaluator itself.
 
     pymoo's NSGA-II with the paper's operators: simulated binary crossover (0.9, eta 15), polynomial mutation (0.9
@@ -163,8 +183,12 @@ def pareto_front(scenario, population=50, generations=60, seed=None, objectives=
     scenario : Scenario
         A single mission. Its `problem` gives objectives, constraints, seed and traverse limit unless told otherwise. A
         required obstacle height above 0 becomes a constraint.
-    population, generations : int
-        Designs in each generation (4 or more), and how many generations (1 or more).
+    population : int, optional
+        Designs in each generation, 4 or more. Default: the paper's 50; 100 where the search is to converge.
+    generations : int or "converged"
+        How many, 1 or more. "converged" stops when 20 generations add less than 1e-4 to the normalised hypervolume
+        (objectives without a published scale are scaled by the front's own span), and the front is that of *all*
+        designs evaluated: some hundreds or thousands.
     seed : int, optional
         Same seed, same bits. Default: the problem's; without one, each run differs.
     objectives : dict of str to str, optional
@@ -173,70 +197,69 @@ def pareto_front(scenario, population=50, generations=60, seed=None, objectives=
         Such as ("slope_capability_deg", ">=", 15).
     model : Model
         Scalars only.
-    start : Front or Design, optional
-        Warm start: its designs join the first generation, filled up with random ones; of more than `population`
-        designs, that many from its lightest to its heaviest.
+    start : "light", Front or Design, optional
+        "light": half of the first generation has the least width, avionics and wheel count, and mostly little chassis,
+        array, battery and torque, where good designs lie. Designs join the first generation, filled up with random
+        ones; of more than `population` designs, that many from the lightest to the heaviest.
     on_generation : callable, optional
         Called with a `Progress` after each generation; when it returns True the search stops and the front so far is
         returned.
     bounds : dict of str to (float, float), optional
         Limits of some variables in place of those in DESIGN_SPACE.
+    warn : bool
+        Warn of an empty front; without, its `message` alone tells.
 
     Returns
     -------
     Front
         Empty, with a message and a UserWarning, where no design met the constraints.
 
-    Raises
-    ------
-    ValueError
-        If an argument is unknown, contradictory or out of range.
-
     References
     ----------
     Deb et al. (2002), doi:10.1109/4235.996017; Blank & Deb (2020), doi:10.1109/ACCESS.2020.2990567.
     """
-    front = search(scenario, population, generations, seed, objectives, constraints, model, start, on_generation, bounds)
-    if not len(front):
-        warnings.warn(front.message, UserWarning, stacklevel=2)
-    return front
-
-
-def search(scenario, population=50, generations=60, seed=None, objectives=None, constraints=None, model=Model(),
-           start=None, on_generation=None, bounds=None):
-    """`pareto_front` without its warning: for threads, where warnings go astray. An empty front has its message."""
-    if not isinstance(scenario, Scenario):
-        raise TypeError(f"scenario must be a Scenario; got {type(scenario).__name__}")
-    population = int(check("population", population, 4, whole=True, scalar=True))
-    generations = int(check("generations", generations, 1, whole=True, scalar=True))
+    population, generations, until = budget(population, generations)
     if seed is not None:
         seed = int(check("seed", seed, 0, whole=True, scalar=True))
-    if not isinstance(model, Model):
-        raise TypeError(f"model must be a Model; got {type(model).__name__}")
-    if model.shape:
-        raise ValueError(f"model must hold single numbers for a search; got arrays of shape {model.shape}")
     scenario, problem = posed(scenario, objectives, constraints, seed)
-    first = _first_generation(start, population, bounds)
-    algorithm, mission = _nsga2(scenario, problem, model, population, generations, first, bounds)
-    history, stopped = [], False
+    algorithm = nsga2(scenario, problem, population, generations, model=model, start=start, bounds=bounds)
+    mission, history, misses, stopped = algorithm.problem, [], [], False
+    archive = Archive(len(problem.objectives)) if until else None
 
     def so_far(message=""):
-        best = [i for i in algorithm.opt if np.all(i.feas)] if algorithm.opt is not None else []
-        # of designs alike in every objective keep one: the last bits would let it dominate its twins
-        _, first = np.unique(np.array([i.F for i in best]).reshape(-1, len(problem.objectives)), axis=0, return_index=True)
-        genes = np.array([best[i].X for i in np.sort(first)]).reshape(-1, len(DESIGN_SPACE))
-        designs = decode(genes, bounds)
+        if archive is not None:
+            genes = archive.genes
+        else:
+            best = [i for i in algorithm.opt if np.all(i.feas)] if algorithm.opt is not None else []
+            # of designs alike in every objective keep one: the last bits would let it dominate its twins
+            F = np.array([i.F for i in best]).reshape(-1, len(problem.objectives))
+            genes = np.array([best[i].X for i in np.sort(np.unique(F, axis=0, return_index=True)[1])])
+        designs = decode(genes.reshape(-1, len(DESIGN_SPACE)), bounds)
         performance = evaluate(designs, scenario, model)
         designs = designs[np.lexsort((performance.range_km, performance.total_mass_kg))]
         # evaluated in their final order: the last bits can depend on a lane's place in the batch
         return Front(designs, evaluate(designs, scenario, model), scenario, model, problem, tuple(history), message)
 
+    def converged():
+        if len(history) <= PATIENCE:
+            return False
+        if not len(history[-1]):                         # nothing feasible: does the nearest miss come nearer?
+            return misses[-1] >= misses[-1 - PATIENCE] * (1 - LEAST_GAIN)
+        return _gain(history[-1 - PATIENCE], history[-1], problem.objectives, scenario) < LEAST_GAIN
+
     while algorithm.has_next() and not stopped:
         algorithm.next()
-        opt = algorithm.opt
-        history.append(opt.get("F")[opt.get("feas").ravel()])
+        if archive is None:
+            opt = algorithm.opt
+            history.append(opt.get("F")[opt.get("feas").ravel()])
+        else:
+            archive.add(*mission.latest)
+            history.append(archive.F)
+            misses.append(mission.least)
         if on_generation is not None:
             stopped = bool(on_generation(Progress(len(history), generations, so_far)))
+        if archive is not None and converged():
+            break
     front = so_far(f"stopped after generation {len(history)} of {generations}" if stopped else "")
     if not len(front):
         words = ", ".join(f"{name} {sign} {limit:g}" for name, sign, limit in problem.constraints)
@@ -244,32 +267,66 @@ def search(scenario, population=50, generations=60, seed=None, objectives=None, 
                    if math.isfinite(mission.least) else
                    f"no design of {len(history)} generations has a solution: the wheels are buried")
         front = dataclasses.replace(front, message=message)
+        if warn:
+            warnings.warn(message, UserWarning, stacklevel=2)
     return front
 
 
-def _first_generation(start, population, bounds):
-    """pymoo's sampling: uniform, or the warm start's designs filled up with uniform ones."""
+class Archive:
+    """Every non-dominated feasible design of a search: objectives `F` (n, m) and `genes` (n, 11)."""
+
+    def __init__(self, objectives: int):
+        self.F, self.genes = np.empty((0, objectives)), np.empty((0, len(DESIGN_SPACE)))
+
+    def add(self, F: np.ndarray, genes: np.ndarray):
+        """Take in a generation; of designs alike in every objective the first stays."""
+        F, first = np.unique(F, axis=0, return_index=True)
+        fresh = ~(self.F[:, None] <= F).all(-1).any(0) & ~beaten(F, F)
+        F, genes = F[fresh], genes[first[fresh]]
+        kept = ~beaten(self.F, F)
+        self.F, self.genes = np.concatenate([self.F[kept], F]), np.concatenate([self.genes[kept], genes])
+
+
+def budget(population, generations):
+    """Population, generations, and whether the search runs until it has converged."""
+    until = isinstance(generations, str) and generations == "converged"
+    if isinstance(generations, str) and not until:
+        raise ValueError(f"generations must be a whole number, at least 1, or 'converged'; got {generations!r}")
+    generations = MOST_GENERATIONS if until else int(check("generations", generations, 1, whole=True, scalar=True))
+    population = (100 if until else 50) if population is None else population
+    return int(check("population", population, 4, whole=True, scalar=True)), generations, until
+
+
+def _first_generation(start, bounds):
+    """pymoo's sampling: uniform; half in the light corner; or known designs filled up with uniform ones."""
     from pymoo.operators.sampling.rnd import FloatRandomSampling
-    designs = getattr(start, "designs", start)
+    names, designs = list(DESIGN_SPACE), getattr(start, "designs", start)
     if designs is None or (isinstance(designs, Design) and designs.shape == (0,)):
         return FloatRandomSampling()
-    if not isinstance(designs, Design):
-        raise TypeError(f"start must be a Front or a Design; got {type(start).__name__}")
+    if not isinstance(designs, Design) and not (isinstance(start, str) and start == "light"):
+        raise TypeError(f"start must be 'light', a Front or a Design; got {start!r}")
 
-    class WarmStart(FloatRandomSampling):
+    class Start(FloatRandomSampling):
         def _do(self, mission, n_samples, *args, **kwargs):
             genes = super()._do(mission, n_samples, *args, **kwargs)
+            if isinstance(start, str):
+                half = genes[:n_samples // 2]            # a view
+                half[:, [names.index(n) for n in ("wheel_width_m", "avionics_power_w", "wheel_count")]] = 0
+                half[:, [names.index(n) for n in ("chassis_mass_kg", "solar_area_m2", "battery_capacity_wh",
+                                                  "peak_wheel_torque_nm")]] **= 3
+                return genes
             known = encode(designs, bounds)
             if len(known) > n_samples:
                 known = known[np.linspace(0, len(known) - 1, n_samples).round().astype(int)]
             genes[:len(known)] = known
             return genes
 
-    return WarmStart()
+    return Start()
 
 
-def _nsga2(scenario, problem, model, population, generations, first, bounds):
-    """pymoo's algorithm, ready for ask and tell, and the mission that it solves."""
+def nsga2(scenario: Scenario, problem: Problem, population: int = 50, generations: int = 60, *, model: Model = Model(),
+          start=None, bounds: dict | None = None):
+    """pymoo's algorithm, ready for ask and tell, on a mission as `posed` returns it; its `problem` is the mission."""
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.config import Config
     from pymoo.core.problem import Problem as Pymoo
@@ -278,29 +335,32 @@ def _nsga2(scenario, problem, model, population, generations, first, bounds):
     from pymoo.operators.survival.rank_and_crowding.metrics import get_crowding_function
     from pymoo.core.survival import Survival
     from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
+    if not isinstance(model, Model):
+        raise TypeError(f"model must be a Model; got {type(model).__name__}")
+    if model.shape:
+        raise ValueError(f"model must hold single numbers for a search; got arrays of shape {model.shape}")
     Config.warnings["not_compiled"] = False
-    signs = np.array([-1.0 if d == "max" else 1.0 for d in problem.objectives.values()])
 
     class Mission(Pymoo):
-        nearest_miss, least = "", math.inf
+        nearest_miss, least, latest = "", math.inf, None
 
         def __init__(self):
             # one constraint more: that the design has a solution at all
-            super().__init__(n_var=len(DESIGN_SPACE), n_obj=len(signs), n_ieq_constr=len(problem.constraints) + 1, xl=0.0,
-                             xu=1.0)
+            super().__init__(n_var=len(DESIGN_SPACE), n_obj=len(problem.objectives), xl=0.0, xu=1.0,
+                             n_ieq_constr=len(problem.constraints) + 1)
 
         def _evaluate(self, x, out, *args, **kwargs):
             result = evaluate(decode(x, bounds), scenario, model)
             # designs that differ in a variable which no objective feels tie in theory; the last bits, which differ
             # from one processor to the next, must not rank them
-            F = np.round(np.stack([getattr(result, name) for name in problem.objectives], axis=1) * signs,
-                         RANKED_DECIMALS)
+            F = np.round(minimised(result, problem.objectives), RANKED_DECIMALS)
             G = np.stack([(getattr(result, name) - limit) * (-1 if sign == ">=" else 1)
                           for name, sign, limit in problem.constraints] + [np.zeros(len(x))], axis=1)
             failed = result.buried | ~np.isfinite(F).all(1) | ~np.isfinite(G).all(1)
             F[failed], G[failed] = FAILED, FAILED
             out["F"], out["G"] = F, G
             missed = np.where(failed, math.inf, np.maximum(G, 0).sum(1))
+            self.latest = F[missed == 0], x[missed == 0]             # what is feasible
             if len(x) and missed.min() < self.least:
                 self.least = missed.min()
                 self.nearest_miss = "the nearest missed them by " + ", ".join(
@@ -325,165 +385,8 @@ def _nsga2(scenario, problem, model, population, generations, first, bounds):
             return pop[kept + list(nearest[:n_survive - len(kept)])]
 
     crowding_distance = get_crowding_function("cd").do
-    algorithm = NSGA2(pop_size=population, sampling=first, crossover=SBX(prob=0.9, eta=15),
+    algorithm = NSGA2(pop_size=population, sampling=_first_generation(start, bounds), crossover=SBX(prob=0.9, eta=15),
                       mutation=PM(prob=0.9, eta=20), survival=StableSurvival(filter_infeasible=False),
                       eliminate_duplicates=True)
-    mission = Mission()
-    algorithm.setup(mission, termination=("n_gen", generations), seed=problem.seed, verbose=False)
-    return algorithm, mission
-
-
-# ---- many fronts ----------------------------------------------------------------------------------------------
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class Case:
-    """One front of a study: everything that `pareto_front` needs, so that it can run anywhere."""
-    scenario: Scenario
-    seed: int
-    shear_scale: float
-    obstacle_height_m: float
-    population: int
-    generations: int
-    model: Model
-
-    def run(self):
-        """The front of this case; the same bits wherever it runs."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)             # an empty front carries its message
-            return pareto_front(
-                dataclasses.replace(self.scenario, required_obstacle_height_m=self.obstacle_height_m),
-                self.population, self.generations, self.seed,
-                model=dataclasses.replace(self.model, shear_scale=self.shear_scale))
-
-    @property
-    def key(self):
-        """Hash of everything that determines the front."""
-        return hashlib.sha256(repr(dataclasses.astuple(self)).encode()).hexdigest()[:16]
-
-    @property
-    def label(self):
-        """A readable name, also of the case's file."""
-        name = re.sub(r"[^\w.-]+", "-", self.scenario.name)         # a name is free text, a file's is not
-        return (f"{name}_seed{self.seed}_shear{self.shear_scale:g}_obstacle{self.obstacle_height_m:g}"
-                f"_{self.population}x{self.generations}_{self.key}")
-
-
-def fronts(scenarios, seeds=None, shear_scales=(1.0,), obstacle_heights_m=(0.0,), population=50, generations=60,
-          model=Model(), executor=None, folder=None, on_front=None):
-    """Fronts for every combination of scenario, seed, shear scale and obstacle height.
-
-    Parameters
-    ----------
-    scenarios : sequence of Scenario
-    seeds : sequence of int, optional
-        Default: each scenario's own seed, 0 where it has none.
-    shear_scales, obstacle_heights_m : sequence of float
-    population, generations : int
-    model : Model
-        Its `shear_scale` is replaced.
-    executor : concurrent.futures.Executor, optional
-        Runs the fronts in parallel: a ProcessPoolExecutor, or a Dask client's `get_executor()`. The result is the
-        same. Default: one after the other, here.
-    folder : path-like, optional
-        Keeps each finished front in a file of its own, written atomically. A study that is run again with the same
-        folder loads what is there and computes only the rest; a damaged file is computed anew.
-    on_front : callable, optional
-        Called with (finished, total, case, front) as each front finishes.
-
-    Returns
-    -------
-    dict of Case to Front
-        In the order of the combinations.
-
-    Raises
-    ------
-    ValueError
-        If a list is empty or a value is out of range.
-    """
-    if isinstance(scenarios, Scenario):
-        raise ValueError(f"scenarios must be a list of Scenario; got the single {scenarios.name!r}")
-    lists = {name: list(values) for name, values in dict(
-        scenarios=scenarios, seeds=(None,) if seeds is None else seeds, shear_scales=shear_scales,
-        obstacle_heights_m=obstacle_heights_m).items()}
-    for name, values in lists.items():
-        if not values:
-            raise ValueError(f"{name} must not be empty")
-    # refuse a bad value now, not after an hour: plain numbers, too, give one key for one case
-    seeds = [s if s is None else int(check("seeds", s, 0, whole=True, scalar=True)) for s in lists["seeds"]]
-    scales = [check("shear_scales", s, above=0, scalar=True) for s in lists["shear_scales"]]
-    heights = [check("obstacle_heights_m", h, 0, scalar=True) for h in lists["obstacle_heights_m"]]
-    cases = [Case(scenario, (scenario.problem.seed or 0) if seed is None else seed, scale, height, population,
-                  generations, model)
-             for scenario in lists["scenarios"] for seed in seeds for scale in scales for height in heights]
-    folder = Path(folder) if folder is not None else None
-    if folder is not None:
-        folder.mkdir(parents=True, exist_ok=True)
-    done = {case: front for case in cases if (front := _load(folder, case)) is not None}
-    finished = 0
-
-    def keep(case, front):
-        nonlocal finished
-        done[case] = front
-        finished += 1
-        if on_front is not None:
-            on_front(finished, len(cases), case, front)
-
-    for case, front in list(done.items()):
-        keep(case, front)
-    waiting = [case for case in cases if case not in done]
-    if executor is None:
-        for case in waiting:
-            front = case.run()
-            _save(folder, case, front)
-            keep(case, front)
-    else:
-        futures = {executor.submit(Case.run, case): case for case in waiting}
-        try:
-            for future in _as_completed(futures):
-                front = future.result()
-                _save(folder, futures[future], front)
-                keep(futures[future], front)
-        finally:                                         # an interrupted study starts nothing more
-            for future in futures:
-                future.cancel()
-    return {case: done[case] for case in cases}
-
-
-def _as_completed(futures):
-    """Futures as they finish; a Dask executor's are not those of concurrent.futures, but have the same methods."""
-    finished = queue.SimpleQueue()
-    for future in futures:
-        future.add_done_callback(finished.put)
-    for _ in futures:
-        yield finished.get()
-
-
-def _save(folder, case, front):
-    """Write a front's designs to its own file: complete or not at all."""
-    if folder is None:
-        return
-    values = {name: np.broadcast_to(getattr(front.designs, name), front.designs.shape).tolist() for name in DESIGN_SPACE}
-    text = json.dumps({"case": case.label, "message": front.message, "designs": values,
-                       "objective_history": [F.tolist() for F in front.objective_history]})
-    part = folder / f".{case.label}.{os.getpid()}.part"
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, folder / f"{case.label}.json")
-
-
-def _load(folder, case):
-    """A front from its file, its performance evaluated anew; None where there is no sound file."""
-    if folder is None or not (folder / f"{case.label}.json").exists():
-        return None
-    try:
-        kept = json.loads((folder / f"{case.label}.json").read_text(encoding="utf-8"))
-        designs = Design(**{name: np.array(kept["designs"][name], float) for name in DESIGN_SPACE})
-        history = tuple(np.array(F, float).reshape(len(F), len(case.scenario.problem.objectives))
-                        for F in kept["objective_history"])
-        message = str(kept["message"])
-    except (ValueError, KeyError, TypeError) as error:
-        warnings.warn(f"{case.label}.json in {folder} is damaged and computed anew: {error}", UserWarning, stacklevel=3)
-        return None
-    model = dataclasses.replace(case.model, shear_scale=case.shear_scale)
-    scenario, problem = posed(dataclasses.replace(case.scenario, required_obstacle_height_m=case.obstacle_height_m),
-                            seed=case.seed)
-    return Front(designs, evaluate(designs, scenario, model), scenario, model, problem, history, message)
+    algorithm.setup(Mission(), termination=("n_gen", generations), seed=problem.seed, verbose=False)
+    return algorithm

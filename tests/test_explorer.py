@@ -486,7 +486,7 @@ def test_a_random_walk_of_300_moves_keeps_working_and_keeps_no_memory(explorer):
 def test_the_search_of_a_mission_is_that_of_pareto_front(explorer):
     explorer.set(population=20, generations=6, view="optimise")
     explorer.optimise(wait=True)
-    wanted = rdk.pareto_front(rdk.scenario(MARE), 20, 6)
+    wanted = rdk.pareto_front(rdk.scenario(MARE), population=20, generations=6)
     for name in rdk.DESIGN_SPACE:
         np.testing.assert_array_equal(getattr(explorer.front.designs, name), getattr(wanted.designs, name))
     see = explorer.controls
@@ -560,8 +560,8 @@ def test_the_front_grows_on_the_screen(explorer, monkeypatch):
             return stop
         return search(*args, on_generation=follow, **problem)
 
-    search, clock = explorer_module.search, itertools.count()
-    monkeypatch.setattr(explorer_module, "search", unhurried)
+    search, clock = explorer_module.pareto_front, itertools.count()
+    monkeypatch.setattr(explorer_module, "pareto_front", unhurried)
     monkeypatch.setattr(explorer_module.time, "monotonic", lambda: next(clock))      # every generation is due
     seen = []
     explorer.controls.picture.observe(lambda change: seen.append(change.new), "value")
@@ -729,7 +729,7 @@ def test_the_python_reproduces_what_is_shown(model, script):
             assert space["intervals"].low[name] == explorer.intervals.low[name]
             assert space["intervals"].high[name] == explorer.intervals.high[name]
     elif script == "why":
-        wanted = rdk.attribution(explorer.design, rdk.rover("CADRE-unit"), explorer.scenario, model)
+        wanted = rdk.attribution(explorer.design, rdk.rover("CADRE-unit"), explorer.scenario, model=model)
         np.testing.assert_array_equal(space["why"].contributions["range_km"], wanted.contributions["range_km"])
     elif script == "the sweep":
         assert space["curve"].fields == ("grouser_count", "slope_deg")

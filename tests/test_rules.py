@@ -60,14 +60,14 @@ def test_an_empty_front_has_a_row_without_numbers(front):
 
 def test_generations_of_one_search_are_those_of_shorter_searches():
     table = rules.over_generations([MARE], [3], [4, 10], population=20)
-    short = rules.front_statistics([tradespace.pareto_front(MARE, 20, 4, seed=3)])
+    short = rules.front_statistics([tradespace.pareto_front(MARE, population=20, generations=4, seed=3)])
     assert list(table.generations) == [4, 10]
     # the same bits: the search does not know how long it will last
     assert table.iloc[0].to_dict() == short.iloc[0].to_dict()
 
 
 def test_crossover_is_the_lowest_height_with_six_wheels():
-    fronts = tradespace.fronts([MARE], obstacle_heights_m=(0, 0.08, 0.12), population=20, generations=5)
+    fronts = rdk.fronts([MARE], obstacle_heights_m=(0, 0.08, 0.12), population=20, generations=5)
     found = rules.crossover(rules.front_statistics(fronts.values())).iloc[0]
     assert found.crossover_m == 0.12, "a rigid wheel of at most 0.20 m climbs 0.10 m"
     assert found.highest_rigid_m == 0.08
@@ -318,7 +318,7 @@ def test_light_designs_are_uniform_in_the_light_part_of_the_space(name):
 def small_ledger():
     """The stochastic and cost rows with every search cut to a few generations of a small population."""
     patch = pytest.MonkeyPatch()
-    study, pareto_front, rediscover = tradespace.fronts, tradespace.pareto_front, rediscovery.rediscover
+    study, pareto_front, rediscover = rdk.fronts, tradespace.pareto_front, rediscovery.rediscover
     sizes = []
 
     def small_study(*arguments, generations=60, **options):

@@ -111,7 +111,7 @@ def test_encode_takes_one_design_and_clips_what_lies_outside():
 
 
 @pytest.mark.parametrize("bounds, words", [
-    ({"wheels": (4, 6)}, "no design variable 'wheels'; choose from wheel_radius_m"),
+    ({"wheels": (4, 6)}, "no design variable 'wheels'; nearest are .*wheel"),
     ({"wheel_radius_m": (0.2, 0.1)}, "wheel_radius_m must rise"),
     ({"wheel_radius_m": 0.1}, r"wheel_radius_m must be a pair \(low, high\); got 0.1"),
     ({"wheel_radius_m": (0.1, 0.2, 0.3)}, "must be a pair"),
@@ -199,7 +199,7 @@ def test_sweep_changes_nothing_but_what_is_swept():
 @pytest.mark.parametrize("over, words", [
     ({}, "one or two fields"), (["slope_deg"], "over must be a dictionary"),
     ({"slope_deg": [1], "duty_cycle": [0.1], "shear_scale": [1]}, "one or two fields"),
-    ({"speed": [1, 2]}, "no field 'speed' in Design, Scenario, Soil or Model; choose from .*slope_deg"),
+    ({"slope": [1, 2]}, "Design, Scenario, Soil and Model have no field 'slope'; nearest are slope_deg"),
     ({"name": ["a", "b"]}, "no field 'name'"), ({"duration_earth_days": [7, 14]}, "duration_earth_days sets"),
     ({"time_step_h": [0.5, 1]}, "time_step_h must be one number"), ({"slope_deg": 5.0}, "one-dimensional"),
     ({"slope_deg": [[1, 2], [3, 4]]}, "one-dimensional"), ({"slope_deg": []}, "one-dimensional"),

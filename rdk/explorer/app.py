@@ -26,7 +26,7 @@ from .controls import GOALS, MISSION_SPACE, OWN, START, VIEWS, Controls, Refresh
 from ..design import DESIGN_SPACE, Design, Model, Scenario, Problem
 from ..mission import evaluate
 from ..sampling import attribution, intervals, replaced, sweep, uncertain_inputs
-from ..tradespace import Front, search
+from ..tradespace import Front, pareto_front
 
 READOUTS = (("range_km", "km", 2), ("total_mass_kg", "kg", 2), ("slope_capability_deg", "deg", 1),
             ("wheel_torque_nm", "N m", 2), ("energy_balance_pct", "%", 0), ("obstacle_capability_m", "m", 3),
@@ -322,7 +322,7 @@ class Explorer:
                 (self.intervals.low[n], self.intervals.high[n]) for n in ("total_mass_kg", "range_km")])
         elif view == "why":
             name, metric = self.inputs["baseline"].value, self.inputs["why_metric"].value
-            why = attribution(design, self._reference(name), scenario, self.model)
+            why = attribution(design, self._reference(name), scenario, model=self.model)
             if metric not in why.contributions:
                 return message(f"{pictures.label(metric)} has no value in some mixture of the two designs (a buried "
                                "wheel), so that its difference cannot be shared out. Choose another metric.")
@@ -358,7 +358,7 @@ class Explorer:
         fields, values, here = list(over), list(over.values()), [self.inputs[n].value for n in over]
         # a mission's field is not the rovers' own: no place for them on its axis
         places = [getattr(fleet, n) for n in fields] if all(n in DESIGN_SPACE for n in fields) else None
-        grid = np.asarray(getattr(sweep(design, scenario, over, self.model).performance, metric), float)
+        grid = np.asarray(getattr(sweep(design, scenario, over, model=self.model).performance, metric), float)
         if len(fields) == 2:
             return pictures.contour(figure, fields, metric, values, grid, here, places and (*places, names))
         draws = {n: v[:, None] for n, v in uncertain_inputs(scenario, 60, model=self.model).items()}
@@ -423,7 +423,7 @@ class Explorer:
             return self._stop.is_set() or not threading.main_thread().is_alive()     # the program is ending
 
         try:
-            front = search(scenario, model=self.model, on_generation=follow, **problem)
+            front = pareto_front(scenario, model=self.model, on_generation=follow, warn=False, **problem)
             done = front.message or f"done: {len(front)} designs after {problem['generations']} generations"
             recipe = {**problem, "generations": len(front.objective_history)}    # fewer where it was cancelled
         except Exception as error:
@@ -477,11 +477,11 @@ class Explorer:
             return explain.as_python(design, self.front.scenario, self.model,
                                      f"front = rdk.pareto_front(mission, {recipe}, model=model)")
         if wanted == "why":
-            return explain.as_python(design, scenario, self.model, "why = rdk.attribution(design, baseline, mission, model)",
+            return explain.as_python(design, scenario, self.model, "why = rdk.attribution(design, baseline, mission, model=model)",
                                      baseline=self._reference(self.inputs["baseline"].value))
         if wanted == "the sweep":
             over = {name: values.tolist() for name, values in self._sweep_values().items()}
-            return explain.as_python(design, scenario, self.model, f"curve = rdk.sweep(design, mission, {over!r}, model)")
+            return explain.as_python(design, scenario, self.model, f"curve = rdk.sweep(design, mission, {over!r}, model=model)")
         return explain.as_python(design, scenario, self.model, "result = rdk.evaluate(design, mission, model)",
                                  f"intervals = rdk.intervals(design, mission, draws={DRAWS}, model=model)")
 
@@ -520,8 +520,8 @@ def live_front(scenario, start=None, model=Model()):
         Less complete than that of a full search.
     """
     population, generations = LIVE
-    return search(_plain(scenario), population, generations if start is None else generations // 2, seed=1, start=start,
-                  model=model)
+    return pareto_front(_plain(scenario), population=population, seed=1, start=start, model=model, warn=False,
+                        generations=generations if start is None else generations // 2)
 
 
 def _plain(scenario):
