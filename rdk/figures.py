@@ -22,10 +22,16 @@ STYLE = {"figure.figsize": (6.4, 3.8), "figure.dpi": 100, "font.size": 10, "axes
          "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, "lines.linewidth": 1.8}
 
 
-def panels(rows=1, columns=1, **options):
-    """A new pyplot figure in the collection's style, and its axes; `options` go to `matplotlib.pyplot.subplots`."""
+def panels(rows=1, columns=1, *, figure=None, **options):
+    """A figure in the collection's style, and its axes; `options` go to `matplotlib.pyplot.subplots`.
+
+    Draws into `figure`, such as that of a live picture, or into a new pyplot figure.
+    """
     with plt.rc_context(STYLE):
-        return plt.subplots(rows, columns, layout="constrained", **options)
+        if figure is None:
+            return plt.subplots(rows, columns, layout="constrained", **options)
+        figure.set_layout_engine("constrained")
+        return figure, figure.subplots(rows, columns, **{k: v for k, v in options.items() if k != "figsize"})
 
 
 def curves(x, series, x_label="", y_label="", *, axes=None, legend=True):
@@ -43,7 +49,7 @@ def curves(x, series, x_label="", y_label="", *, axes=None, legend=True):
     return axes
 
 
-def live(draw, **sliders):
+def live(draw, *, size=(5.2, 3.6), **sliders):
     """A picture with sliders that is drawn anew when one moves; it runs without a browser too.
 
     Parameters
@@ -51,6 +57,8 @@ def live(draw, **sliders):
     draw : callable
         Takes an empty matplotlib Figure and one number a slider, by name; draws, and returns a sentence
         that says what the picture shows. It may run in several threads, one at a time: no pyplot in it.
+    size : tuple of float
+        Width and height of the picture in inches of 100 pixels.
     **sliders : tuple
         Name -> (low, high, step, start, label with unit).
 
@@ -85,11 +93,12 @@ def live(draw, **sliders):
             file = io.BytesIO()
             with plt.rc_context():
                 matplotlib.rcdefaults()                  # a person's matplotlibrc stays outside
-                figure = Figure(figsize=(5.2, 3.6))
+                plt.rcParams.update(STYLE)
+                figure = Figure(figsize=size)
                 box.sentence = draw(figure, **{name: control.value for name, control in controls.items()})
                 figure.savefig(file, format="png", dpi=100)
             box.png, text = base64.b64encode(file.getvalue()).decode(), html.escape(box.sentence)
-            picture.value = (f'<img width="520" height="360" alt="{text}" '
+            picture.value = (f'<img width="{100 * size[0]:.0f}" height="{100 * size[1]:.0f}" alt="{text}" '
                              f'src="data:image/png;base64,{box.png}">')
             said.value = f'<div role="status">{text}</div>'
 

@@ -1,15 +1,16 @@
-"""Figures of notebooks 00 and 05: they draw what they are given, and the diagram is what the code does."""
+"""Pictures of the evaluator and of missions draw what they are given, and the diagram is what the code does."""
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+import pandas as pd
 import pytest
 from dataclasses import replace
 
 import rdk
 import drawings as plots
-from rdk import figures
+from rdk import figures, validation
 
 RASHID = rdk.rover("Rashid-1")
 MARE, POLAR = rdk.scenario("equatorial_mare_traverse"), rdk.scenario("polar_prospecting")
@@ -78,17 +79,6 @@ def test_diagram_draws_every_part_flow_and_result():
     assert set(users.split(", ")) <= set(rdk.__all__)
 
 
-# ---- 00 start here -----------------------------------------------------------------------------------------
-
-def test_growth_draws_values_and_proportion():
-    mass, sinkage = np.array([10.0, 15.0, 20.0]), np.array([4.0, 5.0, 5.5])
-    first, second = plots.growth(mass, {"sinkage (mm)": sinkage, "power (W)": mass**2}).axes
-    np.testing.assert_array_equal(data(first.lines[0]), (mass, sinkage))
-    np.testing.assert_array_equal(data(second.lines[0])[1], mass**2)
-    np.testing.assert_allclose(data(first.lines[1])[1], [4.0, 6.0, 8.0], rtol=1e-12)   # rounding only
-    assert (first.get_title(), first.get_xlabel()) == ("sinkage (mm)", "total mass (kg)")
-
-
 def test_rovers_on_missions_draws_ranges_limits_and_reasons():
     range_km = np.array([[10.0, 0.0], [80.0, 3.0]])
     words = np.array([["drives", "no grip"], ["to the limit", "drives"]])
@@ -100,26 +90,6 @@ def test_rovers_on_missions_draws_ranges_limits_and_reasons():
     assert texts(figure.axes[1]) == ["no grip", "3 km, drives"]
     assert [line.get_marker() for line in figure.axes[1].lines[1:]] == ["X"]       # one rover goes nowhere
     assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == ["A", "B"]
-
-
-@pytest.mark.parametrize("slope_deg", [0.0, 15.0])
-def test_sunk_wheel_stands_as_deep_as_the_evaluator_says(slope_deg):
-    result = rdk.evaluate(RASHID, replace(MARE, slope_deg=slope_deg))
-    figure = plots.sunk_wheel(RASHID, result, slope_deg)
-    soil, rim = (patch.get_xy() for patch in figure.axes[0].patches)
-    up = np.array([-np.sin(np.radians(slope_deg)), np.cos(np.radians(slope_deg))])     # away from the ground
-    # the rim is drawn with 200 points, so its lowest one may miss the bottom by r (pi / 200)^2 / 2 = 1e-5 m
-    np.testing.assert_allclose((rim @ up).min(), -result.sinkage_m, atol=2e-5)
-    np.testing.assert_allclose((rim @ up).max(), 2 * RASHID.wheel_radius_m - result.sinkage_m, atol=2e-5)
-    surface = soil[:32] @ up                             # rut, contact arc, undisturbed surface
-    np.testing.assert_allclose([surface[0], surface.max()], [-result.sinkage_m, 0], atol=1e-12)  # rounding
-    assert f"sinks {1000 * result.sinkage_m:.1f} mm" in figure.get_suptitle()
-
-
-def test_sunk_wheel_says_when_it_stalls_and_draws_smooth_wheels():
-    smooth = replace(RASHID, grouser_count=0, grouser_height_m=0.0)
-    steep = rdk.evaluate(smooth, replace(MARE, slope_deg=34))
-    assert steep.stalled and plots.sunk_wheel(smooth, steep, 34).get_suptitle().endswith("stalls")
 
 
 def test_live_picture_follows_its_sliders_and_has_words():
@@ -141,49 +111,6 @@ def test_live_picture_follows_its_sliders_and_has_words():
     assert plt.get_fignums() == []                       # no pyplot in a callback
 
 
-# ---- 05 mission --------------------------------------------------------------------------------------------
-
-def test_pull_and_demand_marks_the_crossing():
-    slip, load, demand = np.linspace(0, 0.9, 10), 6.0, 1.5
-    pull = rdk.terramechanics.wheel_forces(RASHID.wheel, MARE.soil, load, slip).drawbar_pull_n
-    root = rdk.terramechanics.slip_balance(RASHID.wheel, MARE.soil, load, demand).slip
-    axes = plots.pull_and_demand(slip, {"a": pull}, {"a": demand}, {"a": root}).axes[0]
-    curve, level, mark = axes.lines[:3]
-    np.testing.assert_array_equal(data(curve), (slip, pull))
-    assert set(data(level)[1]) == {demand} and [v.item() for v in data(mark)] == [root, demand]
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("slip", "drawbar pull of one wheel (N)")
-
-
-def test_stall_ends_each_line_at_the_first_stall():
-    slope, rovers = np.linspace(0, 35, 36), ["Rashid-1", "Tenacious"]
-    runs = [rdk.evaluate(rdk.rover(name), replace(MARE, slope_deg=slope)) for name in rovers]
-    slip, torque, stalled = (np.stack([getattr(run, name) for run in runs])
-                             for name in ("slip", "wheel_torque_nm", "stalled"))
-    upper, lower = plots.stall(slope, slip, torque, [0.5, 0.1], stalled, rovers).axes
-    for row, peak in enumerate((0.5, 0.1)):
-        end = stalled[row].argmax() + 1
-        np.testing.assert_array_equal(data(upper.lines[2 * row]), (slope[:end], slip[row, :end]))
-        np.testing.assert_allclose(data(lower.lines[2 * row])[1], torque[row, :end] / peak, rtol=1e-12)
-        assert upper.lines[2 * row + 1].get_marker() == "X"
-    assert len({line.get_linestyle() for line in upper.lines[:4:2]}) == 2          # told apart without colour
-
-
-def test_a_rover_that_never_stalls_has_no_cross():
-    slope, slip = np.array([0.0, 1.0]), np.array([[0.1, 0.2]])
-    upper = plots.stall(slope, slip, slip, [1.0], np.array([[False, False]]), ["a"]).axes[0]
-    np.testing.assert_array_equal(data(upper.lines[0]), (slope, slip[0]))
-    assert "X" not in [line.get_marker() for line in upper.lines]
-
-
-def test_speed_limits_draws_three_speeds_on_a_logarithmic_axis():
-    slope = np.array([0.0, 10.0, 20.0])
-    speeds = np.array([20.0, 10.0, 5.0]), np.array([0.5, 0.4, 0.3]), np.array([0.5, 0.4, 0.3])
-    axes = plots.speed_limits(slope, *speeds).axes[0]
-    for line, speed in zip(axes.lines, speeds):
-        np.testing.assert_array_equal(data(line), (slope, speed))
-    assert axes.get_yscale() == "log" and axes.get_ylabel() == "speed (m/s)"
-
-
 def test_mission_logs_draw_the_logs_and_shade_the_throttled_hours():
     logs = {"mare": rdk.evaluate(RASHID, MARE).log, "polar": rdk.evaluate(RASHID, POLAR).log}
     figure = plots.mission_logs(logs)
@@ -198,20 +125,58 @@ def test_mission_logs_draw_the_logs_and_shade_the_throttled_hours():
     assert [axes.get_title() for axes in figure.axes[:2]] == ["mare", "polar"]
 
 
-def test_step_convergence_draws_errors_and_a_line_of_first_order():
-    step, error = np.array([4.0, 2.0, 1.0]), np.array([0.4, 0.1, 0.02])
-    axes = plots.step_convergence(step, {"range": error}).axes[0]
-    np.testing.assert_array_equal(data(axes.lines[0]), (step, error))
-    np.testing.assert_allclose(data(axes.lines[1])[1], [0.4, 0.2, 0.1], rtol=1e-12)    # rounding only
-    assert axes.get_xscale() == axes.get_yscale() == "log"
+def test_power_flows_stack_up_to_array_and_load():
+    log = rdk.evaluate(RASHID, MARE).log
+    figure = plots.power_flows(log)
+    for axes, total in zip(figure.axes, (log.solar_w, log.load_w)):
+        parts = axes.collections
+        assert len(parts) == 3
+        tops = [part.get_paths()[0].vertices[:, 1].max() for part in parts]
+        assert tops == sorted(tops)
+        # what the three parts come to at every hour is what the array gave, or the load took
+        top = parts[-1].get_paths()[0].vertices
+        for k in (5, 100, 250):
+            drawn = top[np.isclose(top[:, 0], log.time_h[k] / 24), 1]
+            assert np.isclose(drawn, total[k], rtol=1e-9, atol=1e-9).any()        # the same numbers, stacked
 
 
-def test_load_transfer_draws_changes_and_the_papers_band():
-    ratio = np.linspace(0, 0.4, 5)
-    axes = plots.load_transfer(ratio, {"a": -10 * ratio, "b": ratio}, band_pct=2.0).axes[0]
-    np.testing.assert_array_equal(data(axes.lines[0]), (ratio, -10 * ratio))
-    np.testing.assert_array_equal(data(axes.lines[1]), (ratio, ratio))
+def test_mass_shares_are_bars_that_add_up():
+    shares = pd.DataFrame({"a": [30.0, 3.0], "b": [70.0, 97.0]}, index=["one", "two"])
+    axes = plots.mass_shares(shares).axes[0]
+    widths = [patch.get_width() for patch in axes.patches]
+    assert widths == [30.0, 3.0, 70.0, 97.0]
+    assert [patch.get_x() for patch in axes.patches] == [0.0, 0.0, 30.0, 3.0]
+    assert texts(axes) == ["30", "70", "97"], "a segment too narrow for its number carries none"
+    assert "%" in axes.get_xlabel()
+
+
+def test_mass_errors_are_points_with_their_names():
+    masses = validation.published_masses()
+    axes = plots.mass_errors(masses, 10.5).axes[0]
+    points = [[line.get_xdata()[0], line.get_ydata()[0]] for line in axes.get_lines() if len(line.get_xdata()) == 1]
+    np.testing.assert_array_equal(points, masses[["published_mass_kg", "error_pct"]])
+    assert texts(axes) == list(masses.rover)
+    drawn = [line for line in axes.get_lines() if len(line.get_xdata()) == 1]
+    for line, row in zip(drawn, masses.itertuples()):
+        assert line.get_marker() == ("o" if row.wheel_count == 4 else "s")
+        assert (line.get_markerfacecolor() != "white") == row.in_class
     band = axes.patches[0].get_extents().transformed(axes.transData.inverted())
-    np.testing.assert_allclose([band.y0, band.y1], [-2, 2], atol=1e-9)     # through pixels and back
-    assert axes.lines[0].get_linestyle() != axes.lines[1].get_linestyle()
-    assert axes.lines[0].get_marker() != axes.lines[1].get_marker()
+    # there and back through pixels
+    np.testing.assert_allclose([band.y0, band.y1], [-10.5, 10.5], rtol=1e-9)
+
+
+def test_peak_solar_shows_prediction_sweep_and_record():
+    flown = validation.flown_rovers()
+    figure = plots.peak_solar(flown)
+    for axes, row in zip(figure.axes, flown.itertuples()):
+        assert axes.get_title() == row.rover
+        point, caps, bars = axes.containers[0]
+        assert point.get_ydata()[0] == row.clean_peak_w
+        # ends computed as value minus and plus a difference
+        np.testing.assert_allclose(bars[0].get_segments()[0][:, 1],
+                                   [row.clean_peak_low_w, row.clean_peak_high_w],
+                                   rtol=1e-12)
+        low, high = axes.get_ylim()
+        assert low == 0 and high > max(row.clean_peak_high_w, row.published_high_w)
+        band = axes.collections[0].get_paths()[0].vertices[:, 1]
+        assert (band.min(), band.max()) == (row.published_low_w, row.published_high_w)

@@ -1,8 +1,9 @@
-"""The figures of the wheel notebooks draw the numbers they were given, in the units on their axes."""
+"""The pictures of wheels draw the numbers they were given, to scale, in the units on their axes."""
+
+from dataclasses import replace
 
 import matplotlib
 import numpy as np
-import pandas as pd
 import pytest
 
 matplotlib.use("Agg")
@@ -14,7 +15,7 @@ import drawings as plots  # noqa: E402
 from rdk import terramechanics, validation  # noqa: E402
 
 WHEEL, SOIL = rdk.Wheel(0.10, 0.08, 0.015, 14), rdk.soil("apollo-nominal")
-X = np.linspace(0.0, 1.0, 7)
+RASHID, MARE = rdk.rover("Rashid-1"), rdk.scenario("equatorial_mare_traverse")
 
 
 @pytest.fixture(autouse=True)
@@ -36,29 +37,6 @@ def assert_units(figure):
     assert labels and all("(" in label or label in pure for label in labels), labels
 
 
-def test_simple_curves():
-    series = {"a": X**2, "b": 3 * X}
-    for figure in (plots.pressure_sinkage(X, series), plots.shear_mobilisation(X, series, 18.0),
-                   plots.sinkage_against_load(X + 1, series)):
-        assert_units(figure)
-        drawn = lines(figure.axes[0])
-        assert list(drawn) == ["a", "b"]
-        for label, y in series.items():
-            np.testing.assert_array_equal(drawn[label][1], y)
-    assert figure.axes[0].get_xscale() == figure.axes[0].get_yscale() == "log"
-
-
-def test_shear_modulus_and_transition_are_marked():
-    marks = plots.shear_mobilisation(X, {"a": X}, 18.0).axes[0].get_lines()[-1].get_xdata()
-    np.testing.assert_array_equal(marks, 18.0)
-    figure = plots.stress_against_angle(X, 2 * X, 3 * X, 0.4)
-    assert_units(figure)
-    np.testing.assert_array_equal(figure.axes[0].get_lines()[-1].get_xdata(), 0.4)
-    drawn = lines(figure.axes[0])
-    np.testing.assert_array_equal(drawn["normal stress σ"][1], 2 * X)
-    np.testing.assert_array_equal(drawn["shear stress τ"][1], 3 * X)
-
-
 def test_stress_on_rim_is_to_scale():
     angle = np.linspace(0, 0.35, 101)
     cases = {f"slip {s}": (angle, terramechanics.contact_stress(WHEEL, SOIL, 0.35, s, angle))
@@ -78,46 +56,13 @@ def test_stress_on_rim_is_to_scale():
         np.testing.assert_allclose(100 - shear, abs(stress.shear_stress_pa) / 1000 * scale, atol=1e-9)
         arrows = axes.collections[-1]
         assert (np.sign(arrows.U) == (1 if label == "slip 0.6" else -1)).all()
-        marks = [line.get_data() for line in axes.get_lines()[3:6]]
+        marks = [line.get_data() for line in axes.get_lines()[4:7]]
         found = [np.arctan2(x[0], -y[0]) for x, y in marks]
         np.testing.assert_allclose(found, [0.35, stress.transition_angle_rad[0], 0], atol=1e-12)   # rounding
     np.testing.assert_allclose(scales, scales[0], rtol=1e-12)
     bar = figure.axes[0].get_lines()[-1].get_xdata()
     written = float(figure.axes[0].texts[-1].get_text().split()[0])
     np.testing.assert_allclose(np.ptp(bar), written * scales[0], rtol=1e-12)
-
-
-def test_quadrature_error():
-    points = {"a": np.array([2, 4]), "b": np.array([3, 9])}
-    errors = {"a": np.array([0.1, 0.0]), "b": [1e-3, 1e-9]}
-    figure = plots.quadrature_error(points, errors, 100)
-    assert_units(figure)
-    drawn = lines(figure.axes[0])
-    np.testing.assert_array_equal(drawn["a"], [[2, 4], [0.1, 1e-16]])
-    np.testing.assert_array_equal(drawn["b"], [[3, 9], [1e-3, 1e-9]])
-
-
-def test_wheel_against_slip():
-    slip = np.linspace(0, 0.6, 5)
-    cases = {"a": terramechanics.wheel_forces(WHEEL, SOIL, 6.0, slip),
-             "b": terramechanics.wheel_forces(WHEEL, SOIL, 9.0, slip)}
-    figure = plots.wheel_against_slip(slip, cases)
-    assert_units(figure)
-    for label, f in cases.items():
-        for axes, y in zip(figure.axes, (f.drawbar_pull_n, f.torque_nm, 1000 * f.sinkage_m)):
-            np.testing.assert_array_equal(lines(axes)[label], [slip, y])
-
-
-def test_wheel_against_size_and_power_split():
-    figure = plots.wheel_against_size(X, {"a": (X, 2 * X), "b": (3 * X, 4 * X)}, "held")
-    assert_units(figure)
-    for axes, factors in zip(figure.axes, ((1, 3), (2, 4))):
-        for (_, y), factor in zip(lines(axes).values(), factors):
-            np.testing.assert_array_equal(y, factor * X)
-    figure = plots.power_split(X, {"a": X, "b": 2 * X}, 3 * X)
-    assert_units(figure)
-    a, b, total = (y for _, y in lines(figure.axes[0]).values())
-    np.testing.assert_array_equal(a + b, total)
 
 
 def test_load_and_pull_marks_the_slope_on_the_circle():
@@ -132,6 +77,26 @@ def test_load_and_pull_marks_the_slope_on_the_circle():
     np.testing.assert_allclose(np.hypot(x, y), 6.0, rtol=1e-12)
     np.testing.assert_allclose(np.interp(x, load, pull), y, rtol=1e-4)   # a curve of 200 points
     np.testing.assert_allclose(np.hypot(*drawn["weight on the wheel"]), 6.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("slope_deg", [0.0, 15.0])
+def test_sunk_wheel_stands_as_deep_as_the_evaluator_says(slope_deg):
+    result = rdk.evaluate(RASHID, replace(MARE, slope_deg=slope_deg))
+    figure = plots.sunk_wheel(RASHID, result, slope_deg)
+    soil, rim = (patch.get_xy() for patch in figure.axes[0].patches[:2])
+    up = np.array([-np.sin(np.radians(slope_deg)), np.cos(np.radians(slope_deg))])     # away from the ground
+    # the rim is drawn with 200 points, so its lowest one may miss the bottom by r (pi / 200)^2 / 2 = 1e-5 m
+    np.testing.assert_allclose((rim @ up).min(), -result.sinkage_m, atol=2e-5)
+    np.testing.assert_allclose((rim @ up).max(), 2 * RASHID.wheel_radius_m - result.sinkage_m, atol=2e-5)
+    surface = soil[:32] @ up                             # rut, contact arc, undisturbed surface
+    np.testing.assert_allclose([surface[0], surface.max()], [-result.sinkage_m, 0], atol=1e-12)  # rounding
+    assert f"sinks {1000 * result.sinkage_m:.1f} mm" in figure.get_suptitle()
+
+
+def test_sunk_wheel_says_when_it_stalls_and_draws_smooth_wheels():
+    smooth = replace(RASHID, grouser_count=0, grouser_height_m=0.0)
+    steep = rdk.evaluate(smooth, replace(MARE, slope_deg=34))
+    assert steep.stalled and plots.sunk_wheel(smooth, steep, 34).get_suptitle().endswith("stalls")
 
 
 def test_comparison_draws_every_point_and_curve():
@@ -163,23 +128,6 @@ def test_errors_are_signed_and_in_the_units_of_the_axes():
         np.testing.assert_allclose(np.sort(ours), np.sort(theirs), rtol=1e-12)       # the same arithmetic
     low = lines(pull)["Hurrell 2025, grousered"][1]
     assert low[0] < 0 < low[-1]                          # too little pull at small slip, too much at large
-
-
-def test_bias_resistance_and_factor():
-    measured = pd.DataFrame(dict(wheel="smooth", slip=[0.0, 0.3], sinkage_mm=[5.0, 9.0],
-                                 resistance_n=[6.0, 7.0]))
-    figure = plots.sinkage_bias(X, {"a": X}, X, {"b": 2 * X}, measured)
-    left, right = (lines(axes) for axes in figure.axes)
-    np.testing.assert_array_equal(left["a"], [X, X])
-    np.testing.assert_array_equal(left["measured, slip 0"][1], 5.0)
-    np.testing.assert_array_equal(right["b"], [X, 2 * X])
-    np.testing.assert_array_equal(right["measured"], [[0.0, 0.3], [5.0, 9.0]])
-    figure = plots.resistance_against_slip(X, {"smooth": X}, measured)
-    np.testing.assert_array_equal(lines(figure.axes[0])["smooth, kernel"], [X, X])
-    np.testing.assert_array_equal(lines(figure.axes[0])["smooth, measured"], [[0.0, 0.3], [6.0, 7.0]])
-    figure = plots.sinkage_against_factor(X + 1, {"k": X + 2}, (1.0, 8.0))
-    np.testing.assert_array_equal(lines(figure.axes[0])["k"], [X + 1, X + 2])
-    assert figure.axes[0].patches[0].get_height() == 7.0 and figure.axes[0].patches[0].get_y() == 1.0
 
 
 def test_median_spread_puts_each_row_beside_its_name():

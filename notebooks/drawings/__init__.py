@@ -1,23 +1,17 @@
-"""One function per figure of the notebooks: numbers in, a matplotlib Figure out.
+"""Pictures of the notebooks that are too long for a cell: numbers in, a matplotlib Figure out.
 
 Every figure reads without colour (dashes and markers differ too) and names its units. Each function takes what the
-evaluator returned and computes nothing that a reader would want to check.
+evaluator returned and computes nothing that a reader would want to check; `sketches` draws things before their formulas.
 """
 from rdk.figures import (  # noqa: F401
     BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, STYLE, curves, panels)
+from .sketches import (  # noqa: F401
+    heat_box, rover_on_slope, rover_parts, single_wheel_rig, sky_and_panel, wheel_in_soil)
 from .wheel import (  # noqa: F401
-    load_and_pull, power_split, pressure_sinkage, quadrature_error, shear_mobilisation,
-    sinkage_against_load, stress_against_angle, stress_on_rim, wheel_against_size, wheel_against_slip)
+    load_and_pull, median_spread, single_wheel_comparison, single_wheel_errors, stress_on_rim, sunk_wheel)
 from .mission import (  # noqa: F401
-    EVALUATION_FLOW, EVALUATION_RESULTS, _PARTS, demand_chances, growth, load_transfer,
-    mission_logs, pull_and_demand, rovers_on_missions, speed_limits, stall, step_convergence,
-    sunk_wheel, system_diagram)
-from .measurements import (  # noqa: F401
-    _TESTS, _WHEELS, _test_titles, median_spread, resistance_against_slip, single_wheel_comparison,
-    single_wheel_errors, sinkage_against_factor, sinkage_bias)
-from .evidence import (  # noqa: F401
-    HATCHES, day_of_power, efficiency_stack, fixed_overheads, mass_errors, mass_sensitivity,
-    mass_shares, node_temperatures, panel_incidence, peak_solar, power_flows, sun_paths)
+    EVALUATION_FLOW, EVALUATION_RESULTS, demand_chances, mass_errors, mass_shares, mission_logs, peak_solar,
+    power_flows, rovers_on_missions, system_diagram)
 from .fronts import (  # noqa: F401
     SLOPE_BANDS, along_a_front, decoded_genes, dominated_designs, front_history, generation_budget,
     hub_speed_plateau, pareto_fronts, ranks_and_crowding, searches, seed_scatter, variation_operators,
@@ -27,3 +21,10 @@ from .rules import (  # noqa: F401
     family_rules, front_points, frontiers_by_scale, ledger_filter, ledger_html, ledger_text,
     ledger_verdicts, pull_intervals, rediscovery_distances, rocker_bogie_share, sobol_bars,
     variables_on_fronts, verdict)
+from .before_mission import growth, load_transfer, pull_and_demand, speed_limits, stall, step_convergence  # noqa: F401
+from .before_wheel import (  # noqa: F401
+    power_split, pressure_sinkage, quadrature_error, shear_mobilisation, sinkage_against_load, stress_against_angle,
+    wheel_against_size, wheel_against_slip)
+from .evidence import (  # noqa: F401
+    day_of_power, efficiency_stack, fixed_overheads, mass_sensitivity, node_temperatures, panel_incidence, sun_paths)
+from .measurements import resistance_against_slip, sinkage_against_factor, sinkage_bias  # noqa: F401

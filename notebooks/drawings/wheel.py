@@ -1,99 +1,66 @@
-"""Figures of the wheel on soil (notebook 01)."""
-from __future__ import annotations
-
+"""Pictures of wheels and their measurements that are too long for a cell (notebooks 00 to 02)."""
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patches import Arc
 
-from rdk.figures import BLACK, BLUE, COLOURS, DASHES, GREY, MARKERS, ORANGE, panels, curves
+from rdk.figures import BLACK, BLUE, COLOURS, DASHES, GREY, MARKERS, ORANGE, panels
+
+TESTS = {"ding-2011": "Ding 2011", "hurrell-2025": "Hurrell 2025", "wang-han-2016": "Wang & Han 2016"}
+WHEELS = {"smooth": (BLUE, "-", "o"), "grousered": (ORANGE, "--", "s")}
 
 
-def pressure_sinkage(depth_mm, pressure_kpa):
-    """Bekker's law: pressure under a flat plate against its depth, one line a soil.
+def sunk_wheel(design, performance, slope_deg=0.0, figure=None):
+    """One wheel from the side, to scale, sunk into the slope as far as the evaluator says; the rut stays behind."""
+    figure = figure or plt.figure(figsize=(5.2, 3.6))
+    ax = figure.add_axes((0.02, 0.02, 0.96, 0.86))
+    r, sinkage, height = design.wheel_radius_m, performance.sinkage_m, design.grouser_height_m
+    slope = np.radians(slope_deg)
 
-    Parameters
-    ----------
-    depth_mm : ndarray
-    pressure_kpa : dict of str to ndarray
+    def turned(x, y):
+        return np.cos(slope) * x - np.sin(slope) * y, np.sin(slope) * x + np.cos(slope) * y
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    figure, axes = panels()
-    curves(depth_mm, pressure_kpa, "sinkage z (mm)", "pressure p (kPa)", axes=axes)
+    entry = np.arccos(1 - sinkage / r)                   # sinkage = r (1 - cos(entry angle))
+    arc = np.linspace(0, entry, 30)
+    x = np.concatenate([[-9 * r], r * np.sin(arc), [9 * r, 9 * r, -9 * r]])
+    y = np.concatenate([[-sinkage], r * (1 - np.cos(arc)) - sinkage, [0, -9 * r, -9 * r]])
+    ax.fill(*turned(x, y), facecolor="#d9d9d9", edgecolor=BLACK, lw=1.2)
+    ax.plot(*turned(np.array([-9 * r, 9 * r]), np.zeros(2)), color=ORANGE, linestyle="--", lw=1)
+    angle = np.linspace(0, 2 * np.pi, 200)
+    centre = r - sinkage
+    ax.fill(*turned(r * np.sin(angle), centre + r * np.cos(angle)), facecolor="white", edgecolor=BLUE, lw=2)
+    spokes = np.arange(design.grouser_count) * 2 * np.pi / max(design.grouser_count, 1)
+    ends = np.array([r, r + height])[:, None]
+    ax.plot(*turned(ends * np.sin(spokes), centre + ends * np.cos(spokes)), color=BLUE, lw=2)
+    ax.plot(*turned(0, centre), marker="+", color=BLACK)
+    ax.add_patch(Arc(turned(0, centre), r, r, theta1=30 + slope_deg, theta2=150 + slope_deg, color=BLACK, lw=1.2))
+    tip, tail = (turned(0.5 * r * np.sin(a), centre + 0.5 * r * np.cos(a)) for a in np.radians([62, 50]))
+    ax.annotate("", tip, tail, arrowprops=dict(arrowstyle="-|>", color=BLACK, lw=1.2))   # it drives to the right
+    ax.text(*turned(-2.0 * r, 0.12 * r), "undisturbed surface", fontsize=8, color=ORANGE, rotation=slope_deg,
+            rotation_mode="anchor", ha="left", va="bottom")
+    ax.set(xlim=(-2.2 * r, 2.2 * r), ylim=(-1.1 * r, 2.2 * r), aspect="equal", xticks=[], yticks=[])
+    ax.spines[:].set_visible(True)
+    fate = "stalls" if performance.stalled else f"drives {performance.range_km:.0f} km"
+    figure.suptitle(f"{performance.total_mass_kg:.1f} kg on {slope_deg:g}°: "
+                    f"sinks {1000 * sinkage:.1f} mm, slip {performance.slip:.2f}, {fate}", fontsize=10)
     return figure
 
 
-def shear_mobilisation(displacement_mm, shear_kpa, shear_modulus_mm):
-    """Janosi and Hanamoto's law: shear stress against displacement, one line a normal stress; K marked.
+def stress_on_rim(radius_m, cases, figure=None, highest_kpa=None):
+    """The stresses (label -> angles in rad, ContactStress) to scale on the rim of a wheel that drives to the right.
 
-    Parameters
-    ----------
-    displacement_mm : ndarray
-    shear_kpa : dict of str to ndarray
-    shear_modulus_mm : float
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    figure, axes = panels()
-    curves(displacement_mm, shear_kpa, "shear displacement j (mm)", "shear stress τ (kPa)", axes=axes)
-    axes.axvline(shear_modulus_mm, color=GREY, linewidth=1)
-    axes.annotate("K", (shear_modulus_mm, 0.02), xycoords=("data", "axes fraction"), xytext=(4, 0),
-                  textcoords="offset points", color=GREY)
-    return figure
-
-
-def stress_against_angle(angle_deg, normal_kpa, shear_kpa, transition_deg):
-    """Normal and shear stress along the contact arc, exit on the left, entry on the right.
-
-    Parameters
-    ----------
-    angle_deg, normal_kpa, shear_kpa : ndarray
-    transition_deg : float
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    figure, axes = panels()
-    curves(angle_deg, {"normal stress σ": normal_kpa, "shear stress τ": shear_kpa},
-           "angle θ from the downward vertical (deg)", "stress (kPa)", axes=axes)
-    axes.axvline(transition_deg, color=GREY, linewidth=1)
-    axes.annotate("$θ_m$", (transition_deg, 0.02), xycoords=("data", "axes fraction"), xytext=(4, 0),
-                  textcoords="offset points", color=GREY)
-    return figure
-
-
-def stress_on_rim(radius_m, cases, arrows=11):
-    """The stresses drawn to scale on the lower rim of a wheel that drives to the right, one panel a case.
-
-    The blue area outside the rim is the normal stress; its arrows push on the wheel. The hatched orange area
-    inside the rim is the shear stress; its arrows show which way the soil pulls the rim. One stress scale holds
-    for all. Short lines mark the entry angle (1), the transition angle (m) and the exit (2).
-
-    Parameters
-    ----------
-    radius_m : float
-    cases : dict of str to (ndarray, rdk.terramechanics.ContactStress)
-        Angles in radians from the exit at 0 to the entry angle, and the stresses there.
-    arrows : int
-        Number of arrows along the arc.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    Blue, outside: normal stress. Orange, hatched, inside: shear stress, with arrows the way it pulls the rim. Ticks
+    mark entry (1), transition (m) and exit (2). `highest_kpa` fixes the scale, for live pictures.
     """
     r = 1000 * radius_m
-    highest = max(np.max(abs(np.array(stress[:2]))) for _, stress in cases.values()) / 1000
-    widest = max(angle[-1] for angle, _ in cases.values())
+    highest = highest_kpa or max(np.max(abs(np.array(stress[:2]))) for _, stress in cases.values()) / 1000
+    widest = max(angle[-1] for angle, _ in cases.values()) if highest_kpa is None else 0.5
     scale = 0.8 * r * np.sin(widest) / highest                           # mm of drawing a kPa
-    figure, all_axes = panels(1, len(cases), figsize=(3.2 * len(cases), 3.3), squeeze=False, sharey=True)
+    figure, all_axes = panels(1, len(cases), figure=figure, figsize=(3.2 * len(cases), 3.3), squeeze=False, sharey=True)
 
     def at(radius, angle):                                               # the hub is the origin
         return radius * np.sin(angle), -radius * np.cos(angle)
 
-    for axes, (label, (angle, stress)) in zip(all_axes[0], cases.items()):
+    for axes, (label, (angle, stress)) in zip(all_axes[0], cases.items(), strict=True):
         sigma, tau = stress.normal_stress_pa / 1000 * scale, stress.shear_stress_pa / 1000 * scale
         x, y = at(r, angle)
         axes.fill([-r, *x, 2 * r, 2 * r, -r], [-r, *y, y[-1], -2 * r, -2 * r], color="#e8e2d8", zorder=0)
@@ -103,7 +70,7 @@ def stress_on_rim(radius_m, cases, arrows=11):
             axes.fill([*x, *edge[0][::-1]], [*y, *edge[1][::-1]], linewidth=0, edgecolor=colour, **style)
             axes.plot(*edge, color=colour, linewidth=1.5)
         axes.plot(*at(r, np.linspace(-np.pi / 2, np.pi / 2, 181)), color=BLACK, linewidth=1.5)
-        spots = np.linspace(0, angle[-1], arrows + 2)[1:-1]
+        spots = np.linspace(0, angle[-1], 13)[1:-1]
         options = dict(angles="xy", scale_units="xy", scale=1, width=0.006)
         push = np.interp(spots, angle, sigma)
         axes.quiver(*at(r + push, spots), *at(-push, spots), color=BLUE, **options)
@@ -112,9 +79,10 @@ def stress_on_rim(radius_m, cases, arrows=11):
         start = at(r - abs(drag) / 2, spots - np.sign(drag) * length / 2 / r)
         axes.quiver(*start, np.sign(drag) * length * np.cos(spots), np.sign(drag) * length * np.sin(spots),
                     color=BLACK, **options, zorder=3)
+        axes.plot([0, 0], [-0.6 * r, -r], color=GREY, linewidth=1, zorder=0)     # the downward vertical
         for mark, name in ((angle[-1], "1"), (np.ravel(stress.transition_angle_rad)[0], "m"), (0, "2")):
-            axes.plot(*at(np.array([0.73, 0.79]) * r, mark), color=BLACK, linewidth=1)
-            axes.text(*at(0.7 * r, mark), f"θ$_{name}$", ha="center", va="center", fontsize=9)
+            axes.plot(*at(np.array([0.73, 1.0]) * r, mark), color=BLACK, linewidth=1)
+            axes.text(*at(0.68 * r, mark), f"θ$_{name}$", ha="center", va="center", fontsize=9)
         axes.set(xlim=(-0.2 * r, r * (np.sin(widest) + 0.25)), ylim=(-r - 1.15 * highest * scale, -0.62 * r),
                  aspect="equal", title=label, xlabel="forward of the hub (mm)")
         axes.title.set_size(10)
@@ -127,134 +95,10 @@ def stress_on_rim(radius_m, cases, arrows=11):
     return figure
 
 
-def quadrature_error(points, errors, marked_points):
-    """Error of an integration rule against its number of points, on logarithmic scales; one line a rule.
-
-    Parameters
-    ----------
-    points : dict of str to ndarray
-    errors : dict of str to ndarray
-        Relative errors; zeros are drawn at 1e-16.
-    marked_points : int
-        A number of points to mark: that of the paper.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    figure, axes = panels()
-    curves(points, {label: np.maximum(error, 1e-16) for label, error in errors.items()},
-           "evaluations of the stress", "relative error", legend=False, axes=axes)
-    for line, marker in zip(axes.get_lines(), MARKERS):
-        line.set(marker=marker, markersize=5)
-    axes.legend(frameon=False, fontsize=9)
-    axes.axvline(marked_points, color=GREY, linewidth=1)
-    axes.set(xscale="log", yscale="log")
-    return figure
-
-
-def wheel_against_slip(slip, cases):
-    """Drawbar pull, torque and sinkage against slip, one line a case.
-
-    Parameters
-    ----------
-    slip : ndarray
-    cases : dict of str to rdk.terramechanics.WheelForces
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    figure, axes = panels(1, 3, figsize=(9.6, 3.4))
-    for panel, field, factor, y_label in zip(axes, ("drawbar_pull_n", "torque_nm", "sinkage_m"), (1, 1, 1000),
-                                             ("drawbar pull (N)", "torque (N m)", "sinkage (mm)")):
-        curves(slip, {label: factor * getattr(f, field) for label, f in cases.items()}, "slip s",
-               y_label, legend=panel is axes[0], axes=panel)
-        panel.axhline(0, color=GREY, linewidth=0.8)
-    axes[2].set_ylim(bottom=0)
-    return figure
-
-
-def wheel_against_size(size_mm, cases, fixed_label):
-    """Pull over load, and sinkage, against a dimension of the wheel; one line a dimension, the other held.
-
-    Parameters
-    ----------
-    size_mm : ndarray
-    cases : dict of str to (ndarray, ndarray)
-        Pull over load, and sinkage in mm.
-    fixed_label : str
-        What is held, for the title.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    figure, axes = panels(1, 2, figsize=(8.4, 3.4))
-    for panel, i, y_label in zip(axes, (0, 1), ("drawbar pull over load", "sinkage (mm)")):
-        curves(size_mm, {label: case[i] for label, case in cases.items()}, "size (mm)", y_label, axes=panel)
-    figure.suptitle(fixed_label, fontsize=10)
-    return figure
-
-
-def power_split(slip, parts_w, total_w):
-    """Where the power that enters wheel and vehicle goes in the soil, against slip.
-
-    Parameters
-    ----------
-    slip : ndarray
-    parts_w : dict of str to ndarray
-        Parts of the loss, in watts.
-    total_w : ndarray
-        Torque times angular speed less pull times speed.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    figure, axes = panels()
-    curves(slip, {**parts_w, "torque × speed − pull × speed": total_w}, "slip s",
-           "power into the soil (W)", axes=axes)
-    axes.axhline(0, color=GREY, linewidth=0.8)
-    return figure
-
-
-def sinkage_against_load(load_n, sinkage_mm):
-    """Sinkage against load on logarithmic scales: a power law is a straight line.
-
-    Parameters
-    ----------
-    load_n : ndarray
-    sinkage_mm : dict of str to ndarray
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    figure, axes = panels()
-    curves(load_n, sinkage_mm, "load on the wheel (N)", "sinkage (mm)", axes=axes)
-    axes.set(xscale="log", yscale="log")
-    return figure
-
-
 def load_and_pull(cases, weight_n, slope_deg):
-    """Pull against vertical load as a wheel sinks, at one slip, and the circle of what its weight can ask.
+    """Pull against load as a wheel sinks (label -> loads, pulls), and the circle of what its weight asks.
 
-    Where curve and circle meet, the wheel carries w cos(slope) and pulls w sin(slope): the slope is the angle
-    of that point.
-
-    Parameters
-    ----------
-    cases : dict of str to (ndarray, ndarray)
-        Vertical load and drawbar pull in newtons, one curve a soil.
-    weight_n : float
-        Weight on the wheel.
-    slope_deg : dict of str to float
-        Slope capability of each case.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    Where both meet, the wheel carries w cos(slope) and pulls w sin(slope): the slope is the angle of that point.
     """
     figure, axes = panels(figsize=(5.6, 4.2))
     for i, (label, (load, pull)) in enumerate(cases.items()):
@@ -269,4 +113,70 @@ def load_and_pull(cases, weight_n, slope_deg):
     axes.set(xlim=(0, 1.15 * weight_n), ylim=(0, 0.7 * weight_n), aspect="equal",
              xlabel="vertical load $F_z$ (N)", ylabel="drawbar pull (N)")
     axes.legend(frameon=False, fontsize=9)
+    return figure
+
+
+def single_wheel_comparison(points, lines):
+    """Measured points of pull, sinkage and torque over the kernel's curves, one column a test.
+
+    Both are tables of `rdk.validation`: of `single_wheel` and of `single_wheel_curves`.
+    """
+    tests = points.experiment.unique()
+    figure, grid = panels(3, len(tests), figsize=(3.2 * len(tests), 8.2), sharex=True, squeeze=False)
+    quantities = {"drawbar_pull_n": "drawbar pull (N)", "sinkage_mm": "sinkage (mm)", "torque_nm": "torque (N m)"}
+    for column, test in enumerate(tests):
+        grid[0, column].set_title(TESTS.get(test, test), fontsize=11)
+        grid[2, column].set_xlabel("slip s")
+        for axes, (quantity, y_label) in zip(grid[:, column], quantities.items(), strict=True):
+            for wheel, (colour, dash, marker) in WHEELS.items():
+                lane = lines[(lines.experiment == test) & (lines.wheel == wheel)]
+                seen = points[(points.experiment == test) & (points.wheel == wheel)].dropna(subset=quantity)
+                if len(lane):
+                    axes.plot(lane.slip, lane["model_" + quantity], color=colour, linestyle=dash,
+                              linewidth=1.8, label=f"{wheel}, kernel")
+                if len(seen):
+                    axes.plot(seen.slip, seen[quantity], marker, color=colour, label=f"{wheel}, measured")
+            axes.set_ylabel(y_label)
+            axes.axhline(0, color=GREY, linewidth=0.8)
+        if points.torque_nm[points.experiment == test].isna().all():
+            grid[2, column].text(0.95, 0.1, "no torque in the data", transform=grid[2, column].transAxes,
+                                 ha="right", fontsize=9)
+    figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False,
+                  fontsize=9)
+    return figure
+
+
+def single_wheel_errors(points):
+    """Signed errors of the kernel against slip: pull in % of the load, sinkage in mm; open markers: smooth wheels."""
+    figure, axes = panels(1, 2, figsize=(9, 3.6))
+    for i, test in enumerate(points.experiment.unique()):
+        for wheel in WHEELS:
+            lane = points[(points.experiment == test) & (points.wheel == wheel)]
+            pull = 100 * (lane.model_drawbar_pull_n - lane.drawbar_pull_n) / lane.vertical_load_n
+            style = dict(color=COLOURS[i], marker=MARKERS[i], linewidth=0.8, linestyle=":",
+                         markerfacecolor="none" if wheel == "smooth" else COLOURS[i])
+            axes[0].plot(lane.slip, pull, label=f"{TESTS.get(test, test)}, {wheel}" if len(lane) else None, **style)
+            axes[1].plot(lane.slip, lane.model_sinkage_mm - lane.sinkage_mm, **style)
+    for panel, y_label in zip(axes, ("error in pull (% of the load)", "error in sinkage (mm)"), strict=True):
+        panel.set(xlabel="slip s", ylabel=y_label)
+        panel.axhline(0, color=GREY, linewidth=1)
+    figure.legend(loc="outside upper center", ncols=3, frameon=False, fontsize=9)
+    return figure
+
+
+def median_spread(spreads):
+    """Medians of |error| as printed, with bars from 5 to 95 % of the bootstrap (label -> `bootstrap_medians`)."""
+    figure, axes = panels(figsize=(7.4, 4.2))
+    for i, (label, table) in enumerate(spreads.items()):
+        row = np.arange(len(table))[::-1] - 0.3 * i
+        axes.hlines(row, table.low_pct, table.high_pct, color=COLOURS[i], linestyle=DASHES[i], linewidth=2.2,
+                    label=label)
+        axes.plot(table.median_abs_error_pct, row, MARKERS[i], color=COLOURS[i])
+    names = [f"{TESTS.get(test, test)}, {quantity.replace('_', ' ')}" for test, quantity in
+             zip(table.experiment, table.quantity, strict=True)]
+    axes.set_yticks(np.arange(len(table))[::-1] - 0.15 * (len(spreads) - 1), names)
+    axes.set(xscale="log", xlabel="median of |error| (%)")
+    axes.set_xticks([3, 10, 30, 100, 300], ["3", "10", "30", "100", "300"])
+    axes.minorticks_off()
+    figure.legend(loc="outside upper center", ncols=2, frameon=False, fontsize=9)
     return figure

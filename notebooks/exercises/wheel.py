@@ -47,6 +47,8 @@ def _climbs_highland(design):
     kept = {n: getattr(design, n) == getattr(cadre, n) for n in cadre.numbers() if n not in wheels}
     if not all(kept.values()):
         return f"Only wheels and hubs may change; {next(n for n in kept if not kept[n])} did."
+    if 2 * (design.wheel_radius_m + design.grouser_height_m) > design.wheelbase_m:
+        return "Front and rear wheels touch: with their grousers they are longer than the wheelbase."
     result = evaluate(design, catalog.scenario("highland_slope_capability"))
     if result.stalled and result.wheel_torque_nm > design.peak_wheel_torque_nm:
         return "It stalls: the hub is too weak for the torque that this wheel needs."
@@ -84,20 +86,20 @@ EXERCISES["00.3"] = Exercise(
      "A kilogram of chassis makes more than a kilogram of rover: overheads and growth come on top.":
         lambda: 1 / (1 - _structure_share())}, within=0.008)
 
+def _cadre(**changes):
+    return replace(catalog.rover("CADRE-unit"), **changes)
+
+
 EXERCISES["00.4"] = Exercise(
-    "Design", lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.12, wheel_width_m=0.10,
-                            grouser_count=20,
-                            grouser_height_m=0.015, peak_wheel_torque_nm=0.4), "",
-    {"for want of grip": lambda: replace(catalog.rover("CADRE-unit"), peak_wheel_torque_nm=5.0),
-     "the hub is too weak": lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.12,
-                                            wheel_width_m=0.10,
-                                            grouser_count=20, peak_wheel_torque_nm=0.1),
-     "Only wheels and hubs may change; chassis_mass_kg did": lambda: replace(catalog.rover("CADRE-unit"),
-                                                                             chassis_mass_kg=1.0),
-     "weighs 15 kg or more": lambda: replace(catalog.rover("CADRE-unit"), wheel_radius_m=0.18,
-                                             wheel_width_m=0.20,
-                                             grouser_count=20, grouser_height_m=0.015,
-                                             peak_wheel_torque_nm=2.0)},
+    "Design", lambda: _cadre(wheel_radius_m=0.12, wheel_width_m=0.10, grouser_count=20, grouser_height_m=0.015,
+                             peak_wheel_torque_nm=0.4), "",
+    {"for want of grip": lambda: _cadre(peak_wheel_torque_nm=5.0),
+     "the hub is too weak": lambda: _cadre(wheel_radius_m=0.12, wheel_width_m=0.10, grouser_count=20,
+                                           peak_wheel_torque_nm=0.1),
+     "Only wheels and hubs may change; chassis_mass_kg did": lambda: _cadre(chassis_mass_kg=1.0),
+     "wheels touch": lambda: _cadre(wheel_radius_m=0.18),
+     "weighs 15 kg or more": lambda: _cadre(wheel_radius_m=0.13, wheel_width_m=0.20, grouser_count=20,
+                                            grouser_height_m=0.015, peak_wheel_torque_nm=2.0)},
     judge=_climbs_highland)
 
 
