@@ -11,7 +11,7 @@ import numpy as np
 
 
 def number(minimum=-math.inf, maximum=math.inf, *, above=None, below=None, default=dataclasses.MISSING,
-           whole=False, choices=None, infinite=False, scalar=False):
+           whole=False, choices=None, infinite=False, scalar=False, optional=False):
     """A dataclass field that holds a real number, or an array of them, within limits.
 
     Parameters
@@ -30,9 +30,11 @@ def number(minimum=-math.inf, maximum=math.inf, *, above=None, below=None, defau
         Positive infinity is allowed too.
     scalar : bool
         Arrays are refused.
+    optional : bool
+        None is allowed too.
     """
     limits = dict(minimum=minimum, maximum=maximum, above=above, below=below, whole=whole, choices=choices,
-                  infinite=infinite, scalar=scalar)
+                  infinite=infinite, scalar=scalar, optional=optional)
     return dataclasses.field(default=default, metadata=limits)
 
 
@@ -57,11 +59,13 @@ def _allowed(limits):
 
 
 def check(name, value, minimum=-math.inf, maximum=math.inf, *, above=None, below=None, whole=False, choices=None,
-          infinite=False, scalar=False):
+          infinite=False, scalar=False, optional=False):
     """Return `value` as a float or a float array, or raise a ValueError that says what is allowed."""
+    if optional and value is None:
+        return None
     limits = dict(minimum=minimum, maximum=maximum, above=above, below=below, whole=whole, choices=choices,
                   infinite=infinite)
-    refusal = f"{name} must be {_allowed(limits)}; got "
+    refusal = f"{name} must be {_allowed(limits)}{' or None' if optional else ''}; got "
     if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
         raise ValueError(refusal + repr(value))
     try:
@@ -131,22 +135,45 @@ def _names(cls):
     return tuple(f.name for f in dataclasses.fields(cls))
 
 
+class Later:
+    """A field of a Record that may be given as a function without arguments: called when the field is first read."""
+
+    def __set_name__(self, owner, name):
+        self.name = name
+
+    def __get__(self, record, owner=None):
+        if record is None:
+            raise AttributeError(self.name)              # to a dataclass: a field without a default
+        value = vars(record)[self.name]
+        if callable(value):
+            value = vars(record)[self.name] = value()
+        return value
+
+    def __set__(self, record, value):
+        vars(record)[self.name] = value
+
+
 class Record:
     """Base of the frozen dataclasses: numbers are checked, arrays broadcast, lanes can be picked."""
+
+    apart = ()                                           # fields whose arrays do not run over lanes
 
     def __post_init__(self):
         for name, limits in _limits(type(self)):
             object.__setattr__(self, name, check(name, getattr(self, name), **limits))
-        shapes = {name: np.shape(value) for name, value in self.numbers().items()}
+        shapes = {name: np.shape(value) for name, value in self._numbers().items()}
         object.__setattr__(self, "_shape", together(**shapes))       # raises where array lengths disagree
 
     def numbers(self, prefix=""):
         """Names and values of every numeric field, those of nested records with a prefix."""
+        return self._numbers(prefix, getattr)
+
+    def _numbers(self, prefix="", read=lambda record, name: vars(record)[name]):
         found = {}
         for name in _names(type(self)):
-            value = getattr(self, name)
-            if isinstance(value, Record):
-                found |= value.numbers(prefix + name + ".")
+            value = read(self, name)
+            if isinstance(value, Record) and name not in self.apart:
+                found |= value._numbers(prefix + name + ".", read)
             elif isinstance(value, (float, int, np.ndarray, np.generic)):
                 found[prefix + name] = value
         return found
@@ -176,7 +203,7 @@ class Record:
             return value
 
         def pick_record(record):
-            changed = {f.name: pick(getattr(record, f.name)) for f in dataclasses.fields(record)}
+            changed = {name: pick(getattr(record, name)) for name in _names(type(record)) if name not in record.apart}
             return dataclasses.replace(record, **changed)
 
         return pick_record(self)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, field
+from datetime import datetime
 from typing import NamedTuple
 
 import numpy as np
@@ -59,7 +60,7 @@ class Design(Record):
     chassis_mass_kg : float or ndarray
         Structural mass m_c in kg, positive.
     wheelbase_m : float or ndarray
-        In metres, positive. No model reads it: load transfer and tip-over are not modelled.
+        In metres, positive. The paper's model does not read it; `Model.frame_mass_kg_m2` gives it a price.
     solar_area_m2, battery_capacity_wh, avionics_power_w, peak_wheel_torque_nm : float or ndarray
         A_s, C_b, P_a and the peak hub torque of one wheel, positive.
 
@@ -131,10 +132,18 @@ class Scenario(Record):
         Zero or more.
     required_obstacle_height_m : float or ndarray
         Obstacle that the rover must climb, zero or more.
+    maximum_speed_m_s : float or ndarray
+        Speed that operations allow, positive; infinity, the paper's, for no limit.
     panel_tilt_deg : float or ndarray
         From the horizontal, 0 to 180.
     panel_azimuth_deg : float or ndarray
         Direction that the panel faces, clockwise from north, -360 to 360.
+    start_utc : str, optional
+        ISO date and time of the start, for the real sun; None for the paper's, on the equator, rising at the start.
+    longitude_deg : float or ndarray
+        -180 to 360, east positive; matters with `start_utc` only.
+    skyline : optional
+        What hides the sun: `azimuth_deg` and `elevation_deg` of a horizon. None for a level one.
     problem : Problem
         How `pareto_front` poses the mission when it is told nothing else.
 
@@ -155,12 +164,27 @@ class Scenario(Record):
     required_obstacle_height_m: float = number(0, default=0.0)
     panel_tilt_deg: float = number(0, 180, default=0.0)
     panel_azimuth_deg: float = number(-360, 360, default=180.0)
+    maximum_speed_m_s: float = number(above=0, infinite=True, default=math.inf)
+    start_utc: str | None = None
+    longitude_deg: float = number(-180, 360, default=0.0)
+    skyline: object = field(default=None, repr=False)
     problem: Problem = field(default_factory=Problem, repr=False)
 
+    apart = ("skyline",)                                 # its arrays run along the horizon, not over lanes
+
     def __post_init__(self):
+        if self.start_utc is not None:
+            try:
+                datetime.fromisoformat(self.start_utc)
+            except (TypeError, ValueError):
+                raise ValueError("start_utc must be an ISO date and time, such as '2026-11-26T12:00', or None; "
+                                 f"got {self.start_utc!r}") from None
         if not isinstance(self.soil, Soil):
             raise ValueError(f"soil must be a Soil, such as rdk.soil('apollo-nominal'); got {self.soil!r}")
         super().__post_init__()
+
+
+TRANSITIONS = {"paper": (0.4, 0.2), "imposed-arc": (0.18, 0.32)}   # c_1, c_2 of each kernel: Wong & Reece (1967)
 
 
 @dataclass(frozen=True)
@@ -168,13 +192,16 @@ class Model(Record):
     """Every coefficient of the models, with the paper's values as defaults; each a number or an array.
 
     `data/constants.csv` gives unit, origin and source of each. Pass a changed copy to `evaluate`:
-    `evaluate(design, scenario, model=Model(drivetrain_efficiency=0.7))`.
+    `evaluate(design, scenario, model=Model(drivetrain_efficiency=0.7))`. `kernel` is "paper" or "imposed-arc";
+    a transition coefficient of None is the kernel's own.
     """
     # terramechanics
-    transition_c1: float = number(above=0, maximum=1, default=0.4)
-    transition_c2: float = number(0, 1, default=0.2)
+    kernel: str = "paper"
+    transition_c1: float | None = number(above=0, maximum=1, default=None, optional=True)
+    transition_c2: float | None = number(0, 1, default=None, optional=True)
     grouser_lift_cap: float = number(0, default=0.6)
     shear_scale: float = number(above=0, default=1.0)
+    sinkage_scale: float = number(above=0, default=1.0)
     slip_min: float = number(-1, 1, default=-0.9)
     slip_max: float = number(-1, below=1, default=0.95)
     slope_capability_slip: float = number(-1, 1, default=0.6)
@@ -184,6 +211,7 @@ class Model(Record):
     wheel_areal_density_kg_m2: float = number(0, default=8.0)
     grouser_thickness_m: float = number(0, default=0.002)
     grouser_density_kg_m3: float = number(0, default=2700.0)
+    wheel_web_factor: float = number(0, default=0.0)
     motor_base_mass_kg: float = number(0, default=0.15)
     motor_mass_per_torque_kg_nm: float = number(0, default=0.1)
     solar_areal_density_kg_m2: float = number(0, default=2.5)
@@ -192,6 +220,9 @@ class Model(Record):
     avionics_mass_per_power_kg_w: float = number(0, default=0.05)
     linkage_base_mass_kg: float = number(0, default=0.5)
     linkage_chassis_fraction: float = number(0, default=0.08)
+    frame_mass_kg_m2: float = number(0, default=0.0)
+    track_ratio: float = number(above=0, default=0.9)
+    envelope_density_kg_m3: float = number(above=0, default=145.0)
     harness_fraction: float = number(0, default=0.08)
     thermal_control_fraction: float = number(0, default=0.05)
     growth_fraction: float = number(0, default=0.2)
@@ -200,6 +231,8 @@ class Model(Record):
     rocker_bogie_obstacle_ratio: float = number(0, default=1.25)
     drivetrain_efficiency: float = number(above=0, maximum=1, default=0.8)
     hub_no_load_speed_rad_s: float = number(above=0, infinite=True, default=5.0)
+    motor_droop: float = number(0, 1, default=0.0)
+    axle_torque: int = number(choices=(0, 1), default=0)
     # power
     solar_constant_w_m2: float = number(0, default=1361.0)
     synodic_day_h: float = number(above=0, default=708.734136)
@@ -210,6 +243,8 @@ class Model(Record):
     soc_floor: float = number(0, 1, default=0.15)
     soc_initial: float = number(0, 1, default=1.0)
     time_step_h: float = number(above=0, default=1.0, scalar=True)
+    stop_at_limit: int = number(choices=(0, 1), default=0)
+    exact_floor: int = number(choices=(0, 1), default=0)
     # thermal
     enclosure_emissivity: float = number(above=0, maximum=1, default=0.85)
     enclosure_absorptivity: float = number(0, 1, default=0.3)
@@ -224,14 +259,35 @@ class Model(Record):
     operating_temperature_max_c: float = number(default=50.0)
 
     def __post_init__(self):
+        if self.kernel not in TRANSITIONS:
+            raise ValueError(f"kernel must be one of {', '.join(map(repr, TRANSITIONS))}; got {self.kernel!r}")
         super().__post_init__()
-        if np.any(np.asarray(self.transition_c1) + self.transition_c2 > 1):
-            raise ValueError("transition_c1 + transition_c2 must be at most 1; "
-                             f"got {self.transition_c1} + {self.transition_c2}")
+        c1, c2 = self.transition
+        if np.any(np.asarray(c1) + c2 > 1):
+            raise ValueError(f"transition_c1 + transition_c2 must be at most 1; got {c1} + {c2}")
         if np.any(np.asarray(self.slip_min) >= self.slip_max):
             raise ValueError(f"slip_min must be below slip_max; got {self.slip_min} and {self.slip_max}")
         if np.any(np.asarray(self.enclosure_area_base_m2) + self.enclosure_area_coefficient_m2 <= 0):
             raise ValueError("enclosure_area_base_m2 and enclosure_area_coefficient_m2 must not both be 0")
+
+    @property
+    def transition(self):
+        """The transition coefficients c_1 and c_2 in use: the kernel's own where none is given."""
+        own = TRANSITIONS[self.kernel]
+        return (own[0] if self.transition_c1 is None else self.transition_c1,
+                own[1] if self.transition_c2 is None else self.transition_c2)
+
+    @classmethod
+    def engineering(cls, **changes):
+        """What a careful engineer would switch on: the `engineering` column of `data/constants.csv`.
+
+        Parameters
+        ----------
+        changes
+            Other fields, or other values of these.
+        """
+        return cls(**dict(wheel_web_factor=0.5, frame_mass_kg_m2=2.0, motor_droop=1.0, stop_at_limit=1, exact_floor=1)
+                   | changes)
 
 
 def warn_outside(design, stacklevel=3):

@@ -5,8 +5,6 @@ the growth allowance is applied to the dry bus, the payload is added last. Check
 5 to 50 kg only: a matching total does not confirm the line items. No item covers steering actuators, deployment
 mechanisms, telecom or radioisotope heaters, so rovers above the class come out light.
 """
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,7 +44,8 @@ def mass_breakdown(*, wheel_radius_m, wheel_width_m, grouser_height_m, grouser_c
                    motor_base_mass_kg=0.15, motor_mass_per_torque_kg_nm=0.1, solar_areal_density_kg_m2=2.5,
                    battery_specific_energy_wh_kg=120.0, avionics_base_mass_kg=0.3, avionics_mass_per_power_kg_w=0.05,
                    linkage_base_mass_kg=0.5, linkage_chassis_fraction=0.08, harness_fraction=0.08,
-                   thermal_control_fraction=0.05, growth_fraction=0.2):
+                   thermal_control_fraction=0.05, growth_fraction=0.2, wheel_web_factor=0.0, wheelbase_m=0.0,
+                   track_ratio=0.9, frame_mass_kg_m2=0.0):
     """Mass line items and total of a rover.
 
     Parameters
@@ -61,7 +60,7 @@ def mass_breakdown(*, wheel_radius_m, wheel_width_m, grouser_height_m, grouser_c
         A_s in m2, C_b in Wh, P_a in W, peak hub torque in N m per wheel.
     payload_mass_kg : float or ndarray
         In kg, added after growth.
-    wheel_areal_density_kg_m2 ... growth_fraction : float or ndarray
+    wheel_areal_density_kg_m2 ... frame_mass_kg_m2 : float or ndarray
         Coefficients; the defaults are those of the paper's release (see `data/constants.csv`).
 
     Returns
@@ -82,7 +81,8 @@ def mass_breakdown(*, wheel_radius_m, wheel_width_m, grouser_height_m, grouser_c
     '12.88 kg'
     """
     per_wheel = (wheel_areal_density_kg_m2 * 2 * np.pi * wheel_radius_m * wheel_width_m          # rim, hub, spokes
-                 + grouser_count * wheel_width_m * grouser_height_m * grouser_thickness_m * grouser_density_kg_m3)
+                 + grouser_count * wheel_width_m * grouser_height_m * grouser_thickness_m * grouser_density_kg_m3
+                 + wheel_web_factor * wheel_areal_density_kg_m2 * np.pi * wheel_radius_m ** 2)   # disc, not in the paper
     wheels = wheel_count * per_wheel                                                             # eq. mass-wheels
     # eq. mass-motors
     motors = wheel_count * (motor_base_mass_kg + motor_mass_per_torque_kg_nm * peak_wheel_torque_nm)
@@ -91,10 +91,11 @@ def mass_breakdown(*, wheel_radius_m, wheel_width_m, grouser_height_m, grouser_c
     avionics = avionics_base_mass_kg + avionics_mass_per_power_kg_w * avionics_power_w   # eq. mass-power-avionics
     rocker_bogie = np.equal(wheel_count, 6)
     linkage = (linkage_base_mass_kg + linkage_chassis_fraction * chassis_mass_kg) * rocker_bogie
-    subsystems = chassis_mass_kg + wheels + motors + array + battery + avionics + linkage        # eq. mass-subsystems
+    chassis = chassis_mass_kg + frame_mass_kg_m2 * track_ratio * np.square(wheelbase_m)         # frame, not in the paper
+    subsystems = chassis + wheels + motors + array + battery + avionics + linkage        # eq. mass-subsystems
     harness = harness_fraction * subsystems
     thermal = thermal_control_fraction * (subsystems + harness)
     dry = subsystems + harness + thermal                                                         # eq. mass-dry
     growth = growth_fraction * dry
-    return MassBreakdown(chassis_mass_kg, wheels, motors, array, battery, avionics, linkage, harness, thermal, growth,
+    return MassBreakdown(chassis, wheels, motors, array, battery, avionics, linkage, harness, thermal, growth,
                          payload_mass_kg, dry + growth + payload_mass_kg)                        # eq. mass-total

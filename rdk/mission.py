@@ -7,14 +7,14 @@ are constant, so the wheel is solved once, outside the march.
 Limits: constant slope, homogeneous soil, sunrise at the start, a sun on the equator, equal wheel loads. The range
 is what the energy allows under the duty cycle, not an operational estimate.
 """
-from __future__ import annotations
-
 from dataclasses import dataclass, field
+from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 
 from . import power, terramechanics, thermal
-from ._fields import Record, together
+from ._fields import Later, Record, together
 from .design import Design, Model, Scenario, warn_outside
 from .mass import MassBreakdown, mass_breakdown
 
@@ -25,12 +25,18 @@ MASS_COEFFICIENTS = (
     "wheel_areal_density_kg_m2", "grouser_thickness_m", "grouser_density_kg_m3", "motor_base_mass_kg",
     "motor_mass_per_torque_kg_nm", "solar_areal_density_kg_m2", "battery_specific_energy_wh_kg",
     "avionics_base_mass_kg", "avionics_mass_per_power_kg_w", "linkage_base_mass_kg", "linkage_chassis_fraction",
-    "harness_fraction", "thermal_control_fraction", "growth_fraction")
+    "harness_fraction", "thermal_control_fraction", "growth_fraction", "wheel_web_factor", "frame_mass_kg_m2",
+    "track_ratio")
 _MARCHED = (                                             # what the march reads of design, scenario and model
-    ("wheel_radius_m", "wheel_count", "solar_area_m2", "battery_capacity_wh", "avionics_power_w"),
-    ("latitude_deg", "duty_cycle", "traverse_limit_km", "payload_power_w", "panel_tilt_deg", "panel_azimuth_deg"),
+    ("wheel_radius_m", "wheel_count", "solar_area_m2", "battery_capacity_wh", "avionics_power_w",
+     "peak_wheel_torque_nm"),
+    ("latitude_deg", "duty_cycle", "traverse_limit_km", "payload_power_w", "panel_tilt_deg", "panel_azimuth_deg",
+     "maximum_speed_m_s"),
     ("solar_constant_w_m2", "panel_efficiency", "dust_factor", "synodic_day_h", "drivetrain_efficiency",
-     "hub_no_load_speed_rad_s", "soc_initial", "soc_floor", "charge_efficiency", "discharge_efficiency"))
+     "hub_no_load_speed_rad_s", "motor_droop", "soc_initial", "soc_floor", "charge_efficiency",
+     "discharge_efficiency", "stop_at_limit", "exact_floor"))
+_WAITING = (("scenario", "start_utc", None), ("scenario", "skyline", None), ("model", "kernel", "paper"),
+            ("model", "sinkage_scale", 1.0), ("model", "axle_torque", 0))
 
 
 @dataclass(frozen=True)
@@ -104,6 +110,20 @@ class Performance(Record):
         Mean vertical pressure under a wheel at the slip balance, in kPa: its load over the wheel's width times the
         length of its contact, sqrt(z (2 r - z)) at sinkage z. The paper has no such figure; a constraint on it is one
         remedy for the wheels that shrink to the search bound.
+    sliding : bool or ndarray
+        On a descent the wheels cannot brake: the pull at the lowest slip exceeds what the slope demands. Then `stalled`.
+    unserved_h : float or ndarray
+        Hours in which avionics or payload are not fully supplied: an empty pack and too little sun. Whole time steps;
+        to the minute with `Model.exact_floor`.
+    arrival_h : float or ndarray
+        Hour at which the traverse limit is reached; infinity if never.
+    hot_survival, cold_survival : bool or ndarray
+        The two halves of `thermal_survival`: noon below the upper limit, night above the lower one.
+    structure_share : float or ndarray
+        Chassis mass over total mass.
+    wheel_gap_m : float or ndarray
+        Wheelbase less the length that the wheels of one side take up: 2 (r + h_g) on four, 4 (r + h_g) on six.
+        Negative where they overlap, which no model forbids.
     mass : MassBreakdown
     log : TraverseLog or None
         Hour by hour, for one design only.
@@ -129,6 +149,13 @@ class Performance(Record):
     cold_temperature_c: float
     obstacle_capability_m: float
     ground_pressure_kpa: float
+    sliding: bool
+    unserved_h: float
+    arrival_h: float = Later()
+    hot_survival: bool
+    cold_survival: bool
+    structure_share: float
+    wheel_gap_m: float
     mass: MassBreakdown
     log: TraverseLog | None = field(default=None, repr=False, compare=False)
 
@@ -173,6 +200,9 @@ def evaluate(design, scenario, model=Model()):
     for name, value, kind in ("design", design, Design), ("scenario", scenario, Scenario), ("model", model, Model):
         if not isinstance(value, kind):
             raise TypeError(f"{name} must be a {kind.__name__}; got {type(value).__name__}")
+    for record, field, paper in _WAITING:
+        if np.any(getattr({"scenario": scenario, "model": model}[record], field) != paper):
+            raise NotImplementedError(f"{field} of the {record} is not built yet")
     shape = together(design=design.shape, scenario=scenario.shape, model=model.shape)
     warn_outside(design)
     with np.errstate(all="ignore"):                      # a lane without a solution is infeasible, not a warning
@@ -181,10 +211,13 @@ def evaluate(design, scenario, model=Model()):
         balance, capability = terramechanics.climb(
             design.wheel, scenario.soil, weight, scenario.slope_deg, slip_min=model.slip_min, slip_max=model.slip_max,
             capability_slip=model.slope_capability_slip, capability_limit_deg=model.slope_capability_limit_deg,
-            transition_c1=model.transition_c1, transition_c2=model.transition_c2,
+            transition_c1=model.transition[0], transition_c2=model.transition[1],
             grouser_lift_cap=model.grouser_lift_cap, shear_scale=model.shear_scale)
-        stalled = balance.stalled | (balance.torque_nm > design.peak_wheel_torque_nm)
-        traverse, log = _traverse(design, scenario, model, balance, stalled, shape)
+        # surplus pull at both ends of the slip interval, on a descent
+        sliding = (balance.slip == 0) & (np.asarray(scenario.slope_deg) < 0) & ~np.asarray(balance.stalled)
+        stalled = balance.stalled | (balance.torque_nm > design.peak_wheel_torque_nm) | sliding
+        march = partial(_traverse, design, scenario, model, balance.slip, balance.torque_nm, stalled, shape)
+        traverse, log = march()
         area = thermal.enclosure_area(design.chassis_mass_kg, model.enclosure_area_base_m2,
                                       model.enclosure_area_coefficient_m2)
         sunlight = thermal.absorbed_sunlight(
@@ -195,19 +228,23 @@ def evaluate(design, scenario, model=Model()):
             model.sink_temperature_hot_k, emissivity=model.enclosure_emissivity)
         cold = thermal.node_temperature(model.hibernation_power_w + model.radioisotope_heater_power_w, area,
                                         model.sink_temperature_cold_k, emissivity=model.enclosure_emissivity)
-        survives = thermal.survives(hot, cold, model.operating_temperature_min_c, model.operating_temperature_max_c)
+        hot_survival, cold_survival = (hot <= model.operating_temperature_max_c), (cold >= model.operating_temperature_min_c)
         obstacle = design.wheel_radius_m * np.where(np.equal(design.wheel_count, 6), model.rocker_bogie_obstacle_ratio,
                                                     model.rigid_obstacle_ratio)
         contact_m2 = design.wheel_width_m * np.sqrt(balance.sinkage_m * (2 * design.wheel_radius_m - balance.sinkage_m))
         pressure = weight * np.cos(np.radians(scenario.slope_deg)) / contact_m2 / 1000
+        wheel_length = np.where(np.equal(design.wheel_count, 6), 4, 2) * (design.wheel_radius_m + design.grouser_height_m)
         feasible = (~np.asarray(stalled) & (traverse["energy_balance_pct"] >= 0) & (traverse["range_km"] > 0)
                     & (obstacle >= scenario.required_obstacle_height_m))
     fields = dict(
         traverse, total_mass_kg=mass.total_kg, slope_capability_deg=capability, stalled=stalled,
-        thermal_survival=survives, feasible=feasible, buried=balance.buried, slip=balance.slip,
+        thermal_survival=hot_survival & cold_survival, feasible=feasible, buried=balance.buried, slip=balance.slip,
         sinkage_m=balance.sinkage_m, wheel_torque_nm=balance.torque_nm, hot_temperature_c=hot, cold_temperature_c=cold,
-        obstacle_capability_m=obstacle, ground_pressure_kpa=pressure)
+        obstacle_capability_m=obstacle, ground_pressure_kpa=pressure, sliding=sliding, hot_survival=hot_survival,
+        cold_survival=cold_survival, structure_share=mass.chassis_kg / mass.total_kg,
+        wheel_gap_m=design.wheelbase_m - wheel_length)
     return Performance(**{name: _shaped(value, shape) for name, value in fields.items()}, log=log,
+                       arrival_h=partial(_arrival_h, march, shape),
                        mass=MassBreakdown(**{name: _shaped(value, shape) for name, value in mass.numbers().items()}))
 
 
@@ -220,15 +257,13 @@ def _shaped(value, shape):
 
 def mass_of(design, scenario, model):
     """Mass breakdown of a design with the scenario's payload; raises nothing."""
-    sizes = design.numbers()
-    del sizes["wheelbase_m"]
-    return mass_breakdown(**sizes, payload_mass_kg=scenario.payload_mass_kg,
+    return mass_breakdown(**design.numbers(), payload_mass_kg=scenario.payload_mass_kg,
                           **{name: getattr(model, name) for name in MASS_COEFFICIENTS})
 
 
 def cruise_speed(average_solar_power_w, base_load_w, wheel_count, wheel_torque_nm, slip, wheel_radius_m, duty_cycle,
-                 drivetrain_efficiency=0.8, hub_no_load_speed_rad_s=5.0):
-    """Cruise speed: what the average sunlight pays for, capped by the hub's no-load speed.
+                 drivetrain_efficiency=0.8, hub_no_load_speed_rad_s=5.0, maximum_speed_m_s=np.inf):
+    """Cruise speed: what the average sunlight pays for, capped by the hub's no-load speed and by operations.
 
     The energy-balance speed alone, (P_solar - P_a - P_payload) r (1 - s) eta_m / (delta N_w T), reaches tens of m/s
     on easy ground. The cap omega_0 r (1 - s) is not in the paper's text but shapes its highland plateau.
@@ -243,6 +278,8 @@ def cruise_speed(average_solar_power_w, base_load_w, wheel_count, wheel_torque_n
     slip, wheel_radius_m, duty_cycle, drivetrain_efficiency : float or ndarray
     hub_no_load_speed_rad_s : float or ndarray
         omega_0; infinity lifts the cap.
+    maximum_speed_m_s : float or ndarray
+        What operations allow.
 
     Returns
     -------
@@ -256,7 +293,7 @@ def cruise_speed(average_solar_power_w, base_load_w, wheel_count, wheel_torque_n
         free = np.where(surplus > 0, np.inf, 0.0)        # no torque or no driving: nothing limits but the hub
         paid_for = np.asarray(duty_cycle) * torque       # eq. energy-balance-speed
         energy_speed = np.where(paid_for > 0, surplus * rolling_radius * drivetrain_efficiency / paid_for, free)
-        speed = np.minimum(energy_speed, hub_no_load_speed_rad_s * rolling_radius)
+        speed = np.minimum(np.minimum(energy_speed, hub_no_load_speed_rad_s * rolling_radius), maximum_speed_m_s)
         power_w = np.where(np.isfinite(speed), torque * speed / rolling_radius / drivetrain_efficiency, 0.0)
     return speed, energy_speed, power_w
 
@@ -271,72 +308,127 @@ def _step_times(scenario, model):
 
 def _incidence(time_h, lane):
     """cos(i) at times (down) for lanes (across); one column where the lanes share sun and panel."""
-    hour_angle = power.hour_angle_deg(time_h[:, None], lane["synodic_day_h"])
-    return power.incidence_factor(lane["latitude_deg"], hour_angle, lane["panel_tilt_deg"], lane["panel_azimuth_deg"])
+    hour_angle = power.hour_angle_deg(time_h[:, None], lane.synodic_day_h)
+    return power.incidence_factor(lane.latitude_deg, hour_angle, lane.panel_tilt_deg, lane.panel_azimuth_deg)
 
 
-def _traverse(design, scenario, model, balance, stalled, shape):
+def _arrival_h(march, shape):
+    """The march again, for the read-out that not every evaluation pays for."""
+    with np.errstate(all="ignore"):
+        return _shaped(march(with_arrival=True)[0]["arrival_h"], shape)
+
+
+def _traverse(design, scenario, model, slip, torque_nm, stalled, shape, with_arrival=False):
     """March all lanes, in blocks that stay in cache; the results by name, and the log of a single design."""
     size = int(np.prod(shape))
     lanes = {name: getattr(record, name) for record, names in zip((design, scenario, model), _MARCHED) for name in names}
-    lanes |= dict(slip=balance.slip, torque=balance.torque_nm, stalled=stalled)
+    lanes |= dict(slip=slip, torque_nm=torque_nm, stalled=stalled)
     lanes = {name: _shaped(value, shape).ravel() if np.ndim(value) else value for name, value in lanes.items()}
     times, steps = _step_times(scenario, model)
     block = max(MARCH_ELEMENTS // len(times), 32)
     results = {}
     for start in range(0, max(size, 1), block):
         part = {name: value[start:start + block] if np.ndim(value) else value for name, value in lanes.items()}
-        found, log = _march(part, times, steps, shape == ())
+        found, log = _march(SimpleNamespace(**part), times, steps, shape == (), with_arrival)
         for name, value in found.items():
             results.setdefault(name, np.empty(size, np.result_type(value)))[start:start + block] = value
     return {name: value.reshape(shape) for name, value in results.items()}, log
 
 
-def _march(lane, times, steps, with_log):
-    """March a block of lanes: every value of `lane` is a number or an array with one entry a lane."""
-    sun = lane["solar_constant_w_m2"] * lane["panel_efficiency"] * lane["dust_factor"] * lane["solar_area_m2"]
-    duty = lane["duty_cycle"]
-    base_load = lane["avionics_power_w"] + np.asarray(lane["payload_power_w"])
+def _march(lane, times, steps, with_log, with_arrival):
+    """March a block of lanes: every attribute of `lane` is a number or an array with one entry a lane."""
+    sun = lane.solar_constant_w_m2 * lane.panel_efficiency * lane.dust_factor * lane.solar_area_m2
+    duty, limit, capacity = lane.duty_cycle, np.asarray(lane.traverse_limit_km), np.asarray(lane.battery_capacity_wh)
+    base_load = lane.avionics_power_w + np.asarray(lane.payload_power_w)
     average = sun * _incidence(np.linspace(0, times[-1], MEAN_SAMPLES), lane).mean(0)
-    moving = ~np.asarray(lane["stalled"])
-    speed, energy_speed, mobility = cruise_speed(
-        average, base_load, lane["wheel_count"], lane["torque"], lane["slip"], lane["wheel_radius_m"], duty,
-        lane["drivetrain_efficiency"], lane["hub_no_load_speed_rad_s"])
-    speed, energy_speed, mobility = (np.where(moving, x, 0.0) for x in (speed, energy_speed, mobility))
-    load = base_load + duty * mobility
+    # a motor's line: its no-load speed falls with the torque, by the droop at the peak
+    hub_speed = lane.hub_no_load_speed_rad_s * (
+        1 - lane.motor_droop * np.clip(lane.torque_nm / lane.peak_wheel_torque_nm, 0, 1))
+    moving = ~np.asarray(lane.stalled)
+    speed, energy_speed, mobility = (np.where(moving, x, 0.0) for x in cruise_speed(
+        average, base_load, lane.wheel_count, lane.torque_nm, lane.slip, lane.wheel_radius_m, duty,
+        lane.drivetrain_efficiency, hub_speed, lane.maximum_speed_m_s))
     incidence = _incidence(times, lane)
     solar = incidence * sun                              # (steps, lanes)
-    net = np.empty((len(times), *np.broadcast_shapes((1,), *map(np.shape, lane.values()))))
-    np.subtract(solar, load, out=net)                    # for all lanes, also those that differ in the battery only
-    deficit = net < 0
-    capacity = lane["battery_capacity_wh"]
-    stored = power.march_battery(
-        net, steps[:, None], capacity, soc_initial=lane["soc_initial"], soc_floor=lane["soc_floor"],
-        charge_efficiency=lane["charge_efficiency"], discharge_efficiency=lane["discharge_efficiency"])
-    floor = lane["soc_floor"] * np.asarray(capacity)
-    initial = np.maximum(lane["soc_initial"] * np.asarray(capacity), floor)
-    # a step that starts on the floor with too little sun drives on what the sun leaves above the base load
-    throttled = deficit
-    throttled[1:] &= stored[:-1] <= floor
-    throttled[0] &= initial <= floor
+    floor = lane.soc_floor * capacity
+    initial = np.maximum(lane.soc_initial * capacity, floor)
+    exact = np.asarray(lane.exact_floor) == 1
+
+    def charge(load):
+        """Stored energy at the end of each step, and the share of the step spent on the floor, short of power."""
+        net = np.empty((len(times), *np.broadcast_shapes((1,), *map(np.shape, vars(lane).values()))))
+        np.subtract(solar, load, out=net)                # for all lanes, also those that differ in the battery only
+        deficit = net < 0
+        stored = power.march_battery(net, steps[:, None], capacity, soc_initial=lane.soc_initial,
+                                     soc_floor=lane.soc_floor, charge_efficiency=lane.charge_efficiency,
+                                     discharge_efficiency=lane.discharge_efficiency)
+        on_floor = stored <= floor
+        # a step that starts on the floor with too little sun drives on what the sun leaves above the base load
+        share = deficit & np.concatenate([np.broadcast_to(initial <= floor, (1, on_floor.shape[1])), on_floor[:-1]])
+        if exact.any():                                  # so does one that reaches the floor, from there on
+            before = np.concatenate([np.broadcast_to(initial, (1, on_floor.shape[1])), stored[:-1]])
+            hours = (before - floor) * lane.discharge_efficiency / (load - solar)
+            share = np.where(deficit & on_floor & exact, 1 - hours / steps[:, None], share)
+        return stored, on_floor, share
+
+    stored, on_floor, share = charge(base_load + duty * mobility)
+    throttled = share > 0
     # energies by the trapezoidal rule over the samples, nothing recorded at the start: the last one counts half
     samples = (steps + np.append(steps[1:], 0.0)) / 2
     driven_h, mobility_h = duty * steps.sum(), duty * samples.sum()
+    driving = np.asarray(duty)                           # duty of each step
     if throttled.any():
-        lost = np.where(throttled, duty - _solar_duty(solar, base_load, mobility, duty), 0.0)
+        sunlit = _solar_duty(solar, base_load, mobility, duty)
+        driving = duty - share * (duty - sunlit) if exact.any() else np.where(share, sunlit, duty)
+        lost = duty - driving
         driven_h, mobility_h = driven_h - steps @ lost, mobility_h - samples @ lost
+    distance = np.where(driven_h > 0, 3.6 * speed * driven_h, 0.0)
+    stops = np.asarray(lane.stop_at_limit) == 1
+    arrival = _arrival(limit, distance, 3.6 * speed, driving, times, steps) if with_arrival or stops.any() else None
+    if stops.any():                                      # the motors stop on arrival: the march again, with that load
+        share_h = np.clip(arrival - (times - steps)[:, None], 0, steps[:, None])
+        until = np.where(stops, share_h / steps[:, None], 1.0)
+        stored, on_floor, share = charge(base_load + duty * mobility * until)
+        driving = driving * until
+        mobility_h = samples @ np.broadcast_to(driving, stored.shape)
+    unserved_h = 0.0
+    if on_floor.any():
+        dark = on_floor & (solar < base_load)
+        unserved_h = steps @ (np.where(exact, dark * share, dark) if exact.any() else dark)
     generated = sun * (samples @ incidence)
     consumed = base_load * samples.sum() + mobility * mobility_h
-    found = dict(range_km=np.minimum(np.where(driven_h > 0, 3.6 * speed * driven_h, 0.0), lane["traverse_limit_km"]),
-                 energy_balance_pct=100 * (generated - consumed) / consumed, cruise_speed_m_s=speed,
-                 energy_balance_speed_m_s=energy_speed, hub_speed_limited=moving & (speed < energy_speed),
-                 average_solar_power_w=average, final_soc=stored[-1] / capacity,
-                 minimum_soc=np.minimum(stored.min(0), initial) / capacity)
+
+    def soc(stored):
+        """State of charge; on the floor exactly that, whatever multiplying and dividing back leaves."""
+        return np.where(stored <= floor, lane.soc_floor, stored / capacity)
+
+    found = dict(range_km=np.minimum(distance, limit), energy_balance_pct=100 * (generated - consumed) / consumed,
+                 cruise_speed_m_s=speed, energy_balance_speed_m_s=energy_speed,
+                 hub_speed_limited=moving & (speed < np.minimum(energy_speed, lane.maximum_speed_m_s)),
+                 average_solar_power_w=average, final_soc=soc(stored[-1]),
+                 minimum_soc=soc(np.minimum(stored.min(0), initial)), unserved_h=unserved_h)
+    if with_arrival:
+        return {"arrival_h": arrival}, None
     if not with_log:
         return found, None
-    driving = np.where(throttled, _solar_duty(solar, base_load, mobility, duty), duty)
-    return found, _log(lane, times, steps, solar, base_load, driving * mobility, stored, initial, throttled,
+    return found, _log(lane, times, steps, solar, base_load, driving * mobility, stored, soc(stored), initial, throttled,
                        np.where(driving > 0, 3.6 * speed * driving, 0.0))
+
+
+def _arrival(limit_km, distance_km, speed_km_h, driving, times, steps):
+    """Hour at which each lane reaches its limit, infinity where it does not."""
+    reached = (distance_km >= limit_km) & (distance_km > 0)
+    if not np.any(reached):
+        return np.full(np.shape(reached), np.inf)
+    if driving.ndim == 0 or driving.shape[0] == 1:
+        return np.where(reached, limit_km / (speed_km_h * driving), np.inf)
+    driven_h = np.cumsum(driving * steps[:, None], axis=0)
+    need_h = limit_km / speed_km_h
+    last = np.minimum((driven_h < need_h).sum(0), len(steps) - 1)
+    column = np.arange(driven_h.shape[1])
+    over = driven_h[last, column] - need_h
+    rate = np.broadcast_to(driving, driven_h.shape)[last, column]
+    return np.where(reached, times[last] - over / rate, np.inf)
 
 
 def _solar_duty(solar, base_load, mobility, duty):
@@ -349,19 +441,19 @@ def _above_rounding(power_w):
     return np.where(power_w > 1e-9, power_w, 0.0)
 
 
-def _log(lane, times, steps, solar, base_load, mobility, stored, initial, throttled, speed_km_h):
+def _log(lane, times, steps, solar, base_load, mobility, stored, soc, initial, throttled, speed_km_h):
     """The march of one design as a TraverseLog."""
-    solar, mobility, stored, throttled, speed_km_h = (
-        np.broadcast_to(x, (len(times), 1))[:, 0] for x in (solar, mobility, stored, throttled, speed_km_h))
+    solar, mobility, stored, soc, throttled, speed_km_h = (
+        np.broadcast_to(x, (len(times), 1))[:, 0] for x in (solar, mobility, stored, soc, throttled, speed_km_h))
     change = np.diff(stored, prepend=initial.item()) / steps
     load = np.asarray(base_load).item() + mobility
     net = solar - load
-    accepted = np.maximum(change, 0) / lane["charge_efficiency"]
-    delivered = np.maximum(-change, 0) * lane["discharge_efficiency"]
-    elevation, _ = power.sun_position(lane["latitude_deg"], power.hour_angle_deg(times, lane["synodic_day_h"]))
+    accepted = np.maximum(change, 0) / lane.charge_efficiency
+    delivered = np.maximum(-change, 0) * lane.discharge_efficiency
+    elevation, _ = power.sun_position(lane.latitude_deg, power.hour_angle_deg(times, lane.synodic_day_h))
     return TraverseLog(
         time_h=times, step_h=steps, sun_elevation_deg=elevation, solar_w=solar, load_w=load, mobility_w=mobility,
-        stored_wh=stored, soc=stored / lane["battery_capacity_wh"], throttled=throttled,
+        stored_wh=stored, soc=soc, throttled=throttled,
         discarded_w=_above_rounding(net - accepted), unserved_w=_above_rounding(-net - delivered),
         battery_loss_w=accepted - np.maximum(change, 0) + np.maximum(-change, 0) - delivered,
-        distance_km=np.minimum(np.cumsum(speed_km_h * steps), lane["traverse_limit_km"]))
+        distance_km=np.minimum(np.cumsum(speed_km_h * steps), lane.traverse_limit_km))

@@ -268,8 +268,8 @@ def load_transfer(design, scenario, height_to_wheelbase=0.4, slope_deg=25.0, sli
     shift = np.where(six, 3.0, 2.0) * ratio * np.tan(slope)
     factors = [np.ones_like(shift), 1 + shift, np.where(shift < 1, 1 - shift, 1.0)]
     even, lower, upper = (wheel_forces(
-        design.wheel, scenario.soil, load * f, slip, transition_c1=model.transition_c1,
-        transition_c2=model.transition_c2, grouser_lift_cap=model.grouser_lift_cap,
+        design.wheel, scenario.soil, load * f, slip, transition_c1=model.transition[0],
+        transition_c2=model.transition[1], grouser_lift_cap=model.grouser_lift_cap,
         shear_scale=model.shear_scale).drawbar_pull_n for f in factors)
     ends = np.where(six, 1 / 3, 1 / 2)                   # share of the wheels on each end axle
     change = 100 * (ends * (lower + upper - 2 * even)) / even

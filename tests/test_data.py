@@ -12,7 +12,7 @@ import rdk
 
 DATA = Path(__file__).parents[1] / "data"
 ROWS = {"soils.csv": 11, "scenarios.csv": 14, "rovers.csv": 13, "flown.csv": 2, "single_wheel.csv": 27,
-        "constants.csv": 58, "paper_targets.csv": 69, "studies.csv": 4,
+        "constants.csv": 67, "paper_targets.csv": 69, "studies.csv": 4,
         "uncertainties.csv": 17, "skyline_sites.csv": 48, "skylines.csv": 360, "published_light.csv": 6,
         "subsolar_points.csv": 21, "sun_horizons_2024.csv": 96, "ridge_route.csv": 136,
         "ridge_route_skylines.csv": 180, "ridge_light_2026.csv": 61, "slope_histograms.csv": 45}
@@ -219,9 +219,13 @@ def test_studies_and_uncertainties_speak_of_what_exists():
 
 
 def test_model_defaults_are_the_constants_of_the_table():
-    fields = {field.name: field.default for field in dataclasses.fields(rdk.Model)}
+    fields = {field.name: field.default for field in dataclasses.fields(rdk.Model)} | dict(zip(
+        ("transition_c1", "transition_c2"), rdk.Model().transition))
+    assert fields.pop("kernel") == "paper"
     table = {row["name"]: float(row["value"]) for row in TABLES["constants.csv"] if row["kind"] == "model"}
     assert fields == table
+    changed = {row["name"]: float(row["engineering"]) for row in TABLES["constants.csv"] if row["engineering"]}
+    assert rdk.Model.engineering() == rdk.Model(**changed) and all(table[name] != changed[name] for name in changed)
     defaults = {field.name: field.default for field in dataclasses.fields(rdk.Soil)}
     for row in TABLES["constants.csv"]:
         if row["kind"] == "soil default":

@@ -165,8 +165,8 @@ def stress(figure, result, design, scenario, model):
     entry = np.arccos(1 - result.sinkage_m / design.wheel_radius_m)
     angle = np.linspace(0, entry, 81)
     stresses = terramechanics.contact_stress(
-        design.wheel, scenario.soil, entry, result.slip, angle, transition_c1=model.transition_c1,
-        transition_c2=model.transition_c2, grouser_lift_cap=model.grouser_lift_cap, shear_scale=model.shear_scale)
+        design.wheel, scenario.soil, entry, result.slip, angle, transition_c1=model.transition[0],
+        transition_c2=model.transition[1], grouser_lift_cap=model.grouser_lift_cap, shear_scale=model.shear_scale)
     sigma, tau = stresses.normal_stress_pa / 1000, stresses.shear_stress_pa / 1000
     axes.plot(np.degrees(angle), sigma, color=BLUE, label="normal")
     axes.plot(np.degrees(angle), tau, color=ORANGE, ls="--", label="shear")
