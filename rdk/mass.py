@@ -82,7 +82,7 @@ def mass_breakdown(*, wheel_radius_m, wheel_width_m, grouser_height_m, grouser_c
     """
     per_wheel = (wheel_areal_density_kg_m2 * 2 * np.pi * wheel_radius_m * wheel_width_m          # rim, hub, spokes
                  + grouser_count * wheel_width_m * grouser_height_m * grouser_thickness_m * grouser_density_kg_m3
-                 + wheel_web_factor * wheel_areal_density_kg_m2 * np.pi * wheel_radius_m ** 2)   # disc, not in the paper
+                 + wheel_web_factor * wheel_areal_density_kg_m2 * np.pi * wheel_radius_m ** 2)   # a disc; not the paper's
     wheels = wheel_count * per_wheel                                                             # eq. mass-wheels
     # eq. mass-motors
     motors = wheel_count * (motor_base_mass_kg + motor_mass_per_torque_kg_nm * peak_wheel_torque_nm)
@@ -91,7 +91,7 @@ def mass_breakdown(*, wheel_radius_m, wheel_width_m, grouser_height_m, grouser_c
     avionics = avionics_base_mass_kg + avionics_mass_per_power_kg_w * avionics_power_w   # eq. mass-power-avionics
     rocker_bogie = np.equal(wheel_count, 6)
     linkage = (linkage_base_mass_kg + linkage_chassis_fraction * chassis_mass_kg) * rocker_bogie
-    chassis = chassis_mass_kg + frame_mass_kg_m2 * track_ratio * np.square(wheelbase_m)         # frame, not in the paper
+    chassis = chassis_mass_kg + frame_mass_kg_m2 * track_ratio * np.square(wheelbase_m)     # not the paper's
     subsystems = chassis + wheels + motors + array + battery + avionics + linkage        # eq. mass-subsystems
     harness = harness_fraction * subsystems
     thermal = thermal_control_fraction * (subsystems + harness)

@@ -111,7 +111,7 @@ class Performance(Record):
         length of its contact, sqrt(z (2 r - z)) at sinkage z. The paper has no such figure; a constraint on it is one
         remedy for the wheels that shrink to the search bound.
     sliding : bool or ndarray
-        On a descent the wheels cannot brake: the pull at the lowest slip exceeds what the slope demands. Then `stalled`.
+        On a descent the wheels cannot brake: the pull at the lowest slip exceeds the demand. Then `stalled`.
     unserved_h : float or ndarray
         Hours in which avionics or payload are not fully supplied: an empty pack and too little sun. Whole time steps;
         to the minute with `Model.exact_floor`.
@@ -200,9 +200,9 @@ def evaluate(design, scenario, model=Model()):
     for name, value, kind in ("design", design, Design), ("scenario", scenario, Scenario), ("model", model, Model):
         if not isinstance(value, kind):
             raise TypeError(f"{name} must be a {kind.__name__}; got {type(value).__name__}")
-    for record, field, paper in _WAITING:
-        if np.any(getattr({"scenario": scenario, "model": model}[record], field) != paper):
-            raise NotImplementedError(f"{field} of the {record} is not built yet")
+    for kind, name, paper in _WAITING:
+        if np.any(getattr({"scenario": scenario, "model": model}[kind], name) != paper):
+            raise NotImplementedError(f"{name} of the {kind} is not built yet")
     shape = together(design=design.shape, scenario=scenario.shape, model=model.shape)
     warn_outside(design)
     with np.errstate(all="ignore"):                      # a lane without a solution is infeasible, not a warning
@@ -228,12 +228,13 @@ def evaluate(design, scenario, model=Model()):
             model.sink_temperature_hot_k, emissivity=model.enclosure_emissivity)
         cold = thermal.node_temperature(model.hibernation_power_w + model.radioisotope_heater_power_w, area,
                                         model.sink_temperature_cold_k, emissivity=model.enclosure_emissivity)
-        hot_survival, cold_survival = (hot <= model.operating_temperature_max_c), (cold >= model.operating_temperature_min_c)
+        hot_survival = hot <= model.operating_temperature_max_c
+        cold_survival = cold >= model.operating_temperature_min_c
         obstacle = design.wheel_radius_m * np.where(np.equal(design.wheel_count, 6), model.rocker_bogie_obstacle_ratio,
                                                     model.rigid_obstacle_ratio)
         contact_m2 = design.wheel_width_m * np.sqrt(balance.sinkage_m * (2 * design.wheel_radius_m - balance.sinkage_m))
         pressure = weight * np.cos(np.radians(scenario.slope_deg)) / contact_m2 / 1000
-        wheel_length = np.where(np.equal(design.wheel_count, 6), 4, 2) * (design.wheel_radius_m + design.grouser_height_m)
+        wheel_length = (design.wheel_radius_m + design.grouser_height_m) * np.where(np.equal(design.wheel_count, 6), 4, 2)
         feasible = (~np.asarray(stalled) & (traverse["energy_balance_pct"] >= 0) & (traverse["range_km"] > 0)
                     & (obstacle >= scenario.required_obstacle_height_m))
     fields = dict(
@@ -321,7 +322,8 @@ def _arrival_h(march, shape):
 def _traverse(design, scenario, model, slip, torque_nm, stalled, shape, with_arrival=False):
     """March all lanes, in blocks that stay in cache; the results by name, and the log of a single design."""
     size = int(np.prod(shape))
-    lanes = {name: getattr(record, name) for record, names in zip((design, scenario, model), _MARCHED) for name in names}
+    records = zip((design, scenario, model), _MARCHED)
+    lanes = {name: getattr(record, name) for record, names in records for name in names}
     lanes |= dict(slip=slip, torque_nm=torque_nm, stalled=stalled)
     lanes = {name: _shaped(value, shape).ravel() if np.ndim(value) else value for name, value in lanes.items()}
     times, steps = _step_times(scenario, model)
@@ -411,8 +413,8 @@ def _march(lane, times, steps, with_log, with_arrival):
         return {"arrival_h": arrival}, None
     if not with_log:
         return found, None
-    return found, _log(lane, times, steps, solar, base_load, driving * mobility, stored, soc(stored), initial, throttled,
-                       np.where(driving > 0, 3.6 * speed * driving, 0.0))
+    return found, _log(lane, times, steps, solar, base_load, driving * mobility, stored, soc(stored), initial,
+                       throttled, np.where(driving > 0, 3.6 * speed * driving, 0.0))
 
 
 def _arrival(limit_km, distance_km, speed_km_h, driving, times, steps):

@@ -133,10 +133,13 @@ def test_count_of_random_designs_is_checked(count):
 
 # ---- sweeps ---------------------------------------------------------------------------------------------
 
+WAITING = ("sinkage_scale", "axle_torque")             # not built yet
+
+
 def sweepable():
     for owner, kind in RECORDS.items():
         for f in dataclasses.fields(kind):
-            if f.metadata and not f.metadata["scalar"]:
+            if f.metadata and not f.metadata["scalar"] and f.name not in WAITING:
                 yield owner, f.name
 
 
@@ -147,6 +150,10 @@ def two_values(owner, name):
         return [4, 6]
     if name == "grouser_count":
         return [14, 9]
+    if name in ("stop_at_limit", "exact_floor"):
+        return [0, 1]
+    if name in ("transition_c1", "transition_c2"):       # None: the kernel's own
+        nominal = PARTS["model"].transition[name == "transition_c2"]
     return [nominal, 0.97 * nominal or 0.01]
 
 
@@ -238,8 +245,8 @@ def test_intervals_follow_the_seed_and_hold_their_order():
     assert found.low["total_mass_kg"] != other.low["total_mass_kg"]
     inner = rdk.intervals(RASHID, MARE, draws=200, seed=5, level=0.5)
     for name in sampling.METRICS:
-        nested = [found.low, inner.low, found.median, inner.high, found.high]
-        assert np.all(np.diff([end[name] for end in nested]) >= 0), name
+        nested = [end[name] for end in (found.low, inner.low, found.median, inner.high, found.high)]
+        assert np.all(np.array(nested[1:]) >= nested[:-1]), name                    # an arrival may be at infinity
     assert_same_metrics(rdk.evaluate(RASHID, MARE), type("Nominal", (), found.nominal))
     assert found.draws.shape == (200,)
     frame = found.to_frame()
@@ -393,7 +400,7 @@ def size(why, name):
 
 
 def test_attribution_adds_up_for_every_metric(why):
-    assert set(why.contributions) == set(sampling.METRICS)
+    assert set(why.contributions) == set(sampling.METRICS) - {"arrival_h"}          # some mixtures never arrive
     for name, shares in why.contributions.items():
         difference = float(getattr(why.performance, name)) - float(getattr(why.baseline_performance, name))
         # 2,048 roundings of values of this size
@@ -408,6 +415,8 @@ def test_a_variable_that_nothing_reads_gets_nothing(why):
     same = [name for name in rdk.DESIGN_SPACE if getattr(RASHID, name) == getattr(TENACIOUS, name)]
     assert "wheel_count" in same
     for metric, shares in why.to_frame().loc[["wheelbase_m", *same]].items():
+        if metric == "wheel_gap_m":                      # it reads the wheelbase, which is all of its difference here
+            continue
         # what is left is what a lane's place in a batch moves
         np.testing.assert_allclose(shares, 0, atol=1e-9 * size(why, metric), err_msg=metric)
 
@@ -456,6 +465,8 @@ def test_attribution_equals_the_mean_over_all_orders():
     why = rdk.attribution(design, RASHID, steep)
     frame = why.to_frame()
     for (name, metric), share in expected.items():
+        if metric == "arrival_h":                        # infinite: it has no differences
+            continue
         tolerance = 1e-9 * size(why, metric)
         np.testing.assert_allclose(frame[metric][name], share, atol=tolerance, err_msg=f"{name} {metric}")
     assert abs(frame.slope_capability_deg[names]).min() > 0.01      # the game is not a trivial one
