@@ -1,0 +1,412 @@
+"""Height maps of the Moon: read what NASA publishes, take slopes and skylines, or make ground up.
+
+A map is a square grid on a stereographic plane that touches a sphere at its centre: the poles' own projection, and
+any small map's. Distances on the plane are taken as true; at 180 km from the centre they are 0.3 % too long.
+"""
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from . import catalog
+from ._fields import check, unknown
+from .sky import Skyline
+
+RADIUS_M = 1_737_400.0                                   # the sphere of LOLA's heights
+
+
+def _vertical(latitude_deg, longitude_deg):
+    """Unit vector straight up at places; the first axis has its three components."""
+    lat, lon = np.broadcast_arrays(np.radians(latitude_deg), np.radians(longitude_deg))
+    return np.array([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)])
+
+
+@dataclass(frozen=True, eq=False)
+class Terrain:
+    """Heights on a square grid, row 0 at the top, values at the centres of cells.
+
+    Parameters
+    ----------
+    height_m : ndarray, shape (rows, columns)
+        Above the sphere of `radius_m`; NaN where nothing was measured.
+    step_m : float
+        Edge of a cell, positive.
+    west_m, north_m : float
+        Outer edges of the top left cell on the plane, x to the right, y upwards.
+    latitude_deg, longitude_deg : float
+        Where the plane touches the sphere; y points north there (at the south pole towards 0 E, at the north pole
+        towards 180 E).
+    radius_m : float
+    name : str
+    """
+    height_m: np.ndarray
+    step_m: float
+    west_m: float = 0.0
+    north_m: float = 0.0
+    latitude_deg: float = -90.0
+    longitude_deg: float = 0.0
+    radius_m: float = RADIUS_M
+    name: str = ""
+
+    def __post_init__(self):
+        height = np.array(self.height_m, float)
+        if height.ndim != 2 or min(height.shape) < 2:
+            raise ValueError(f"height_m must be a grid of at least 2 x 2 cells; got shape {height.shape}")
+        if np.isinf(height).any() or np.isnan(height).all():
+            raise ValueError("height_m must hold finite heights, NaN where there is none, and not NaN alone")
+        height.flags.writeable = False
+        object.__setattr__(self, "height_m", height)
+        for name, limits in (("step_m", dict(above=0)), ("west_m", {}), ("north_m", {}), ("radius_m", dict(above=0)),
+                             ("latitude_deg", dict(minimum=-90, maximum=90)), ("longitude_deg", {})):
+            object.__setattr__(self, name, check(name, getattr(self, name), scalar=True, **limits))
+
+    def __repr__(self):
+        rows, columns = self.height_m.shape
+        return (f"<Terrain {self.name or 'unnamed'}: {rows} x {columns} cells of {self.step_m:g} m, "
+                f"{np.nanmin(self.height_m):.0f} to {np.nanmax(self.height_m):.0f} m>")
+
+    # ---- places ------------------------------------------------------------------------------------------------
+
+    @property
+    def _axes(self):
+        """Unit vectors east, north and up at the centre of the plane."""
+        up, east = _vertical(self.latitude_deg, self.longitude_deg), _vertical(0.0, self.longitude_deg + 90)
+        return np.array([east, np.cross(up, east), up])
+
+    def _from_axes(self, east, north, up):
+        """Plane coordinates of a point of the unit sphere from its components along the axes."""
+        return 2 * self.radius_m * east / (1 + up), 2 * self.radius_m * north / (1 + up)
+
+    def to_xy(self, latitude_deg, longitude_deg):
+        """Plane coordinates x, y (m) of places in degrees."""
+        return self._from_axes(*np.tensordot(self._axes, _vertical(latitude_deg, longitude_deg), 1))
+
+    def to_latlon(self, x, y):
+        """Latitude and east longitude (deg) of plane coordinates in metres."""
+        u, v = np.asarray(x, float) / (2 * self.radius_m), np.asarray(y, float) / (2 * self.radius_m)
+        square = u * u + v * v
+        p = np.tensordot(self._axes.T, np.array([2 * u, 2 * v, 1 - square]) / (1 + square), 1)
+        return np.degrees(np.arcsin(np.clip(p[2], -1, 1))), np.degrees(np.arctan2(p[1], p[0])) % 360
+
+    def cell(self, x, y):
+        """Row and column of the cell that holds a point of the plane; a point outside is refused."""
+        row = np.floor((self.north_m - np.asarray(y, float)) / self.step_m).astype(int)
+        column = np.floor((np.asarray(x, float) - self.west_m) / self.step_m).astype(int)
+        rows, columns = self.height_m.shape
+        if not np.all((row >= 0) & (row < rows) & (column >= 0) & (column < columns)):
+            raise ValueError(f"the point lies outside the map: x {self.west_m:g} to "
+                             f"{self.west_m + columns * self.step_m:g} m, y {self.north_m - rows * self.step_m:g} to "
+                             f"{self.north_m:g} m; got {x!r}, {y!r}")
+        return row, column
+
+    def place(self, row, column):
+        """Plane coordinates x, y (m) of the centres of cells."""
+        return (self.west_m + (np.asarray(column) + 0.5) * self.step_m,
+                self.north_m - (np.asarray(row) + 0.5) * self.step_m)
+
+    def _reach(self, latitude_deg, longitude_deg):
+        """Distance (m) from a place beyond which the map surely has ended."""
+        x, y = self.to_xy(latitude_deg, longitude_deg)
+        rows, columns = self.height_m.shape
+        return np.hypot(max(abs(x - self.west_m), abs(x - self.west_m - columns * self.step_m)),
+                        max(abs(y - self.north_m), abs(y - self.north_m + rows * self.step_m)))
+
+    def at(self, x, y):
+        """Height at points of the plane, bilinear between the centres of cells; NaN outside."""
+        rows, columns = self.height_m.shape
+        row, column = (self.north_m - y) / self.step_m - 0.5, (x - self.west_m) / self.step_m - 0.5
+        inside = (row >= 0) & (row <= rows - 1) & (column >= 0) & (column <= columns - 1)
+        i = np.clip(np.where(inside, row, 0), 0, rows - 2).astype(np.intp)       # outside, read some cell: it becomes NaN
+        k = np.clip(np.where(inside, column, 0), 0, columns - 2).astype(np.intp)
+        down, right, flat = row - i, column - k, self.height_m.ravel()
+        i *= columns
+        i += k
+        top = flat[i] * (1 - right) + flat[i + 1] * right
+        i += columns
+        return np.where(inside, top * (1 - down) + (flat[i] * (1 - right) + flat[i + 1] * right) * down, np.nan)
+
+    # ---- read-outs ---------------------------------------------------------------------------------------------
+
+    def _gradient(self):
+        """Rise over run towards x and y, by central differences."""
+        down, right = np.gradient(self.height_m, self.step_m)
+        return right, -down
+
+    def slope(self):
+        """Steepest slope of each cell in degrees, over a baseline of two cells: shorter slopes are steeper."""
+        return np.degrees(np.arctan(np.hypot(*self._gradient())))
+
+    def hillshade(self, azimuth_deg=315.0, elevation_deg=30.0):
+        """Brightness 0 to 1 of each cell, lit from an azimuth clockwise from the top of the map; no cast shadows."""
+        east, north = self._gradient()
+        azimuth, elevation = np.radians([azimuth_deg, elevation_deg])
+        facing = np.sin(elevation) - np.cos(elevation) * (np.sin(azimuth) * east + np.cos(azimuth) * north)
+        return np.clip(facing / np.sqrt(1 + east**2 + north**2), 0, 1)
+
+    def skyline(self, x, y, height_m=2.0, *, beyond=(), directions=720, nearest_m=15.0, farthest_m=180e3, growth=0.01):
+        """Skyline of a point of the map, by great circles with the Moon's curvature exact.
+
+        A point of radius r at the arc g stands at tan(elevation) = (r cos g - r_eye) / (r sin g).
+
+        Parameters
+        ----------
+        x, y, height_m : float
+            Place on the plane, and height of the eye above the ground there, zero or more.
+        beyond : sequence of Terrain
+            Coarser maps, for what this one does not cover: the first that covers a point gives its height. Where
+            all maps end, nothing more is seen.
+        directions : int
+            Evenly spaced azimuths, at least 4.
+        nearest_m, farthest_m : float
+            Where the search begins and ends. The steps are half a cell, later `growth` of the distance.
+        """
+        check("height_m", height_m, 0, scalar=True), check("directions", directions, 4, whole=True, scalar=True)
+        ground = float(self.at(float(x), float(y)))
+        if np.isnan(ground):
+            raise ValueError(f"no height is known at x {x!r} m, y {y!r} m of {self!r}")
+        turn = self.step_m / 2 / growth
+        s = np.r_[np.arange(nearest_m, turn, self.step_m / 2),
+                  np.geomspace(turn, farthest_m, max(int(np.log(farthest_m / turn) / growth), 2))]
+        arc, azimuth = s / self.radius_m, np.arange(directions) * 360 / directions
+        lat, lon = self.to_latlon(x, y)
+        up, east = _vertical(lat, lon), _vertical(0.0, lon + 90)
+        ahead = np.outer(np.cos(np.radians(azimuth)), np.cross(up, east)) + np.outer(np.sin(np.radians(azimuth)), east)
+        height = np.full((directions, len(s)), np.nan)
+        for terrain in (self, *beyond):                  # of each map only the stretch that it can add to
+            stretch = slice(np.argmax(np.isnan(height).any(axis=0)), np.searchsorted(s, terrain._reach(lat, lon)))
+            rays = [np.outer(ahead @ axis, np.sin(arc[stretch])) + (up @ axis) * np.cos(arc[stretch])
+                    for axis in terrain._axes]
+            known = height[:, stretch]
+            height[:, stretch] = np.where(np.isnan(known), terrain.at(*terrain._from_axes(*rays)), known)
+        r, eye = self.radius_m + height, self.radius_m + ground + height_m
+        tangent = np.fmax.reduce((r * np.cos(arc) - eye) / (r * np.sin(arc)), axis=1)
+        tangent = np.where(np.isnan(tangent), -np.sqrt(max((eye / self.radius_m)**2 - 1, 0)), tangent)   # a bare sphere
+        return Skyline(azimuth, np.degrees(np.arctan(tangent)), float(lat), float(lon), float(height_m),
+                       f"{self.name or 'terrain'} at {x:.0f}, {y:.0f} m, {height_m:g} m")
+
+
+# ---- files -----------------------------------------------------------------------------------------------------
+
+def read(path, *, scale=None, offset=None, west_m=None, north_m=None, step_m=None, latitude_deg=None,
+         longitude_deg=None):
+    """A height map from a file, with its place on the Moon.
+
+    A PDS image (`.img` with its label `.lbl` beside it) and a GeoTIFF (`.tif`, with `tifffile` installed) say
+    themselves where they are. A 16-bit PNG does not: give the keywords, or put a `terrain.csv` beside it with a row
+    that has them as columns and the file's name in `file`.
+
+    Parameters
+    ----------
+    path : str or Path
+    scale, offset : float
+        For a PNG: height in metres = value * scale + offset.
+    west_m, north_m, step_m, latitude_deg, longitude_deg : float
+        For a PNG: as in `Terrain`; the centre of the plane is the south pole unless given.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the file or its label is missing.
+    ImportError
+        For a GeoTIFF without `tifffile`.
+    ValueError
+        If the file cannot be placed: another projection, another body, no geometry.
+    """
+    path, given = Path(path), dict(scale=scale, offset=offset, west_m=west_m, north_m=north_m, step_m=step_m,
+                                   latitude_deg=latitude_deg, longitude_deg=longitude_deg)
+    if not path.exists():
+        raise FileNotFoundError(f"no file {path}")
+    kind = path.suffix.lower()
+    if kind == ".png":
+        return _png(path, given)
+    if any(value is not None for value in given.values()):
+        raise ValueError(f"{path.name} says itself where it lies: give scale, offset and geometry for a PNG only")
+    readers = {".img": _pds, ".lbl": _pds, ".tif": _geotiff, ".tiff": _geotiff}
+    if kind not in readers:
+        raise ValueError(f"{path.name}: a height map must be a .png, .tif, or .img with its .lbl; got {kind or 'none'}")
+    return readers[kind](path)
+
+
+def _png(path, given):
+    from PIL import Image
+    table = path.with_name("terrain.csv")
+    if not any(value is not None for value in given.values()) and table.exists():
+        with open(table, encoding="utf-8", newline="") as file:
+            row = next((row for row in csv.DictReader(file) if row.get("file") == path.name), {})
+        given |= {key: float(row[key]) for key in ("scale", "offset", "west_m", "north_m", "step_m") if row.get(key)}
+        if centre := re.search(r"centre ([\d.]+) ([NS]) (-?[\d.]+) E", row.get("projection", "")):
+            given["latitude_deg"] = float(centre[1]) * (1 if centre[2] == "N" else -1)
+            given["longitude_deg"] = float(centre[3])
+    missing = [key for key in ("scale", "offset", "west_m", "north_m", "step_m") if given[key] is None]
+    if missing:
+        raise ValueError(f"{path.name}: a PNG does not say where it lies; give {', '.join(missing)}")
+    with Image.open(path) as image:
+        if not image.mode.startswith("I"):
+            raise ValueError(f"{path.name}: heights need one channel of 16 bits; got mode {image.mode}")
+        raw = np.asarray(image).astype(float)
+    scale, offset = given.pop("scale"), given.pop("offset")
+    return Terrain(raw * scale + offset, name=path.stem, **{k: v for k, v in given.items() if v is not None})
+
+
+def _pds(path):
+    found = {p.suffix.lower(): p for p in path.parent.iterdir() if p.stem == path.stem}
+    for kind in (".lbl", ".img"):
+        if kind not in found:
+            raise FileNotFoundError(f"{path.name} needs {path.stem}{kind} beside it")
+    text = re.sub(r"/\*.*?\*/", "", found[".lbl"].read_text(encoding="latin-1"), flags=re.S)
+    label = {key: value.strip() for key, value in re.findall(r"^\s*(\^?\w+)\s*=\s*(.+?)\s*$", text, re.M)}
+
+    def word(key):
+        if key not in label:
+            raise ValueError(f"{path.stem}: the label has no {key}")
+        return label[key].partition("<")[0].strip().strip("\"'").strip()
+
+    def length(key):
+        """A number of the label in metres."""
+        return number(key) * (1000 if "<K" in label[key].upper() else 1)
+
+    def number(key, default=None):
+        text = word(key) if key in label or default is None else default
+        try:
+            return float(text)
+        except ValueError:
+            raise ValueError(f"{path.stem}: {key} must be a number; got {text!r}") from None
+
+    _expect(path, "projection", word("MAP_PROJECTION_TYPE").upper().replace("_", " "),
+            ("POLAR STEREOGRAPHIC", "STEREOGRAPHIC"))
+    _expect(path, "direction of longitude", word("POSITIVE_LONGITUDE_DIRECTION").upper(), ("EAST",))
+    radius = _moon(path, length("A_AXIS_RADIUS"))
+    kinds = {"LSB_INTEGER": "<i", "MSB_INTEGER": ">i", "PC_REAL": "<f", "IEEE_REAL": ">f"}
+    sample = _expect(path, "sample type", word("SAMPLE_TYPE").upper(), kinds)
+    rows, columns = int(number("LINES")), int(number("LINE_SAMPLES"))
+    raw = np.fromfile(found[".img"], np.dtype(f"{kinds[sample]}{int(number('SAMPLE_BITS')) // 8}"))
+    if raw.size != rows * columns:
+        raise ValueError(f"{found['.img'].name} holds {raw.size} samples; its label says {rows} x {columns}")
+    height = raw.reshape(rows, columns).astype(float)
+    if "MISSING_CONSTANT" in label:
+        height[height == number("MISSING_CONSTANT")] = np.nan
+    unit = 1000 if word("UNIT").upper().startswith("K") else 1
+    height = (height * number("SCALING_FACTOR", 1) + number("OFFSET", 0)) * unit
+    if np.nanmedian(height) > radius / 2:                # the label counts from the Moon's centre
+        height -= radius
+    step = length("MAP_SCALE")                           # offsets count samples from the middle of the first one
+    return Terrain(height, step, -(number("SAMPLE_PROJECTION_OFFSET") + 0.5) * step,
+                   (number("LINE_PROJECTION_OFFSET") + 0.5) * step, number("CENTER_LATITUDE"),
+                   number("CENTER_LONGITUDE"), radius, path.stem)
+
+
+def _geotiff(path):
+    try:
+        import tifffile
+    except ImportError:
+        raise ImportError(f"{path.name}: reading a GeoTIFF needs tifffile: pip install tifffile") from None
+    with tifffile.TiffFile(path) as file:
+        page = file.pages[0]
+        height, keys = page.asarray().astype(float), dict(page.geotiff_tags or {})
+        nodata = page.tags.get("GDAL_NODATA")
+    if height.ndim != 2:
+        raise ValueError(f"{path.name}: heights need one channel; got an image of shape {height.shape}")
+    if not {"ModelPixelScale", "ModelTiepoint", "ProjCoordTransGeoKey"} <= set(keys):
+        raise ValueError(f"{path.name} cannot be placed: a GeoTIFF needs a pixel scale, a tie point and a projection")
+    if nodata is not None:
+        height[height == float(nodata.value.strip("\0 "))] = np.nan
+    projection = int(keys["ProjCoordTransGeoKey"])
+    _expect(path, "projection", projection, {1: "transverse Mercator", 14: "stereographic", 15: "polar stereographic",
+                                             16: "oblique stereographic", 21: "orthographic"})
+    step_x, step_y = keys["ModelPixelScale"][:2]
+    if not np.isclose(step_x, step_y, rtol=1e-6):
+        raise ValueError(f"{path.name}: cells must be square; got {step_x:g} x {step_y:g} m")
+
+    def number(*names, default=0.0):
+        return next((float(keys[name]) for name in names if name in keys), default)
+
+    latitude = number("ProjNatOriginLatGeoKey", "ProjCenterLatGeoKey")
+    longitude = number("ProjStraightVertPoleLongGeoKey", "ProjNatOriginLongGeoKey", "ProjCenterLongGeoKey")
+    if projection == 15 and abs(latitude) != 90 or number("ProjScaleAtNatOriginGeoKey", default=1.0) != 1:
+        raise ValueError(f"{path.name}: the scale must be true at the centre of the projection")
+    i, k, _, x, y = keys["ModelTiepoint"][:5]
+    middle = 0.5 if int(number("GTRasterTypeGeoKey", default=1)) == 2 else 0.0    # 2: the tie point is a cell's centre
+    west = x - (i + middle) * step_x - number("ProjFalseEastingGeoKey", "ProjFalseOriginEastingGeoKey")
+    north = y + (k + middle) * step_x - number("ProjFalseNorthingGeoKey", "ProjFalseOriginNorthingGeoKey")
+    far = max(abs(west), abs(north), abs(west + height.shape[1] * step_x), abs(north - height.shape[0] * step_x))
+    if projection in (1, 21) and far > 100e3:            # near its centre every such plane is the tangent one
+        raise ValueError(f"{path.name}: this projection is read within 100 km of its centre; the map reaches {far:.0f} m")
+    return Terrain(height, step_x, west, north, latitude, longitude,
+                   _moon(path, number("GeogSemiMajorAxisGeoKey", default=np.nan)), path.stem)
+
+
+def _expect(path, what, value, allowed):
+    if value not in allowed:
+        words = allowed.values() if isinstance(allowed, dict) and isinstance(value, int) else allowed
+        raise ValueError(f"{path.name} cannot be placed: {what} must be {' or '.join(words)}; got {value!r}")
+    return value
+
+
+def _moon(path, radius_m):
+    if not 1.73e6 < radius_m < 1.745e6:
+        raise ValueError(f"{path.name} cannot be placed: its sphere must be the Moon's, 1737.4 km; got {radius_m:g} m")
+    return radius_m
+
+
+# ---- made-up ground --------------------------------------------------------------------------------------------
+
+def synthetic(seed, *, like="connecting_ridge_10m", cells=256, step_m=None, latitude_deg=-85.0, longitude_deg=0.0):
+    """Made-up ground: a fractal with craters, its slopes those of a real map. It repeats at its edges.
+
+    Parameters
+    ----------
+    seed : int
+        The same seed makes the same ground.
+    like : str
+        A map of `data/slope_histograms.csv`; its name ends in the length of its cells.
+    cells : int
+        Rows and columns, at least 32.
+    step_m : float, optional
+        Length of a cell; the real map's, by default. Slopes belong to a baseline.
+    latitude_deg, longitude_deg : float
+        Of the middle of the map.
+    """
+    table = catalog.rows("slope_histograms.csv")
+    known = [name.removesuffix("_pct") for name in table[0] if name.endswith("_pct")]
+    if like not in known:
+        raise unknown("no map", like, known)
+    cells = check("cells", cells, 32, whole=True, scalar=True)
+    step = check("step_m", step_m if step_m is not None else float(re.search(r"_(\d+)m", like)[1]), above=0)
+    rng = np.random.default_rng(check("seed", seed, 0, whole=True, scalar=True))
+    wave = np.hypot(np.fft.fftfreq(cells)[:, None], np.fft.fftfreq(cells))
+    wave[0, 0] = np.inf                                  # amplitude falls as the wavelength to the power 2.5
+    height = np.fft.ifft2(np.fft.fft2(rng.standard_normal((cells, cells))) / wave**2.5).real
+    height *= 0.03 * cells / height.std()
+    grid = np.arange(cells)
+    for diameter in 5 / np.sqrt(rng.uniform((16 / cells)**2, 1, cells)):     # craters in cells: N(> D) as D^-2
+        away = [np.minimum(abs(grid - middle), cells - abs(grid - middle)) for middle in rng.random(2) * cells]
+        r = np.hypot(away[0][:, None], away[1]) / (diameter / 2)
+        depth = rng.uniform(0.02, 0.2) * diameter       # worn bowls to fresh ones, with a rim a fifth as high
+        height += depth * np.where(r < 1, 1.2 * np.minimum(r, 1)**2 - 1, 0.2 / np.maximum(r, 1)**3)
+    return Terrain(_with_slopes(height, table, like) * step, step, -cells * step / 2, cells * step / 2, latitude_deg,
+                   longitude_deg, name=f"synthetic {seed}, like {like}")
+
+
+def _with_slopes(height, table, like, rounds=10):
+    """Heights in cells whose slopes have the shares of a table: scale each gradient, integrate, again."""
+    shares = np.cumsum([float(row[f"{like}_pct"]) for row in table])
+    ends = np.array([float(row["slope_to_deg"]) for row in table])
+    wanted = np.tan(np.radians(np.interp((np.arange(height.size) + 0.5) / height.size, np.r_[0, shares / shares[-1]],
+                                         np.r_[0, ends])))
+    wave = np.sin(2 * np.pi * np.fft.fftfreq(len(height)))           # of central differences
+    square = wave[:, None]**2 + wave**2
+    square[square < 1e-12] = np.inf                      # level and checkerboard, which have no slope
+    for _ in range(rounds):
+        down = (np.roll(height, -1, 0) - np.roll(height, 1, 0)) / 2
+        right = (np.roll(height, -1, 1) - np.roll(height, 1, 1)) / 2
+        steep = np.hypot(down, right)
+        factor = np.empty(height.size)
+        factor[np.argsort(steep, axis=None, kind="stable")] = wanted
+        factor = factor.reshape(height.shape) / np.maximum(steep, 1e-12)
+        spectrum = -1j * (wave[:, None] * np.fft.fft2(down * factor) + wave * np.fft.fft2(right * factor)) / square
+        height = np.fft.ifft2(spectrum).real             # the nearest surface to these gradients
+    return height
