@@ -156,8 +156,6 @@ class Later:
 class Record:
     """Base of the frozen dataclasses: numbers are checked, arrays broadcast, lanes can be picked."""
 
-    apart = ()                                           # fields whose arrays do not run over lanes
-
     def __post_init__(self):
         for name, limits in _limits(type(self)):
             object.__setattr__(self, name, check(name, getattr(self, name), **limits))
@@ -172,7 +170,7 @@ class Record:
         found = {}
         for name in _names(type(self)):
             value = read(self, name)
-            if isinstance(value, Record) and name not in self.apart:
+            if isinstance(value, Record):
                 found |= value._numbers(prefix + name + ".", read)
             elif isinstance(value, (float, int, np.ndarray, np.generic)):
                 found[prefix + name] = value
@@ -203,7 +201,7 @@ class Record:
             return value
 
         def pick_record(record):
-            changed = {name: pick(getattr(record, name)) for name in _names(type(record)) if name not in record.apart}
+            changed = {name: pick(getattr(record, name)) for name in _names(type(record))}
             return dataclasses.replace(record, **changed)
 
         return pick_record(self)

@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, field
-from datetime import datetime
 from typing import NamedTuple
 
 import numpy as np
 
 from ._fields import Record, number
+from .sky import Skyline, julian_date
 from .terramechanics import Soil, Wheel
 
 
@@ -142,8 +142,9 @@ class Scenario(Record):
         ISO date and time of the start, for the real sun; None for the paper's, on the equator, rising at the start.
     longitude_deg : float or ndarray
         -180 to 360, east positive; matters with `start_utc` only.
-    skyline : optional
-        What hides the sun: `azimuth_deg` and `elevation_deg` of a horizon. None for a level one.
+    skyline : rdk.sky.Skyline or sequence of float, optional
+        What hides the sun, such as `rdk.skyline("shackleton_rim")`, or elevations (deg) evenly spaced from north
+        clockwise; the share of the solar disc above it multiplies the power. None for the paper's level cut.
     problem : Problem
         How `pareto_front` poses the mission when it is told nothing else.
 
@@ -167,18 +168,18 @@ class Scenario(Record):
     maximum_speed_m_s: float = number(above=0, infinite=True, default=math.inf)
     start_utc: str | None = None
     longitude_deg: float = number(-180, 360, default=0.0)
-    skyline: object = field(default=None, repr=False)
+    skyline: Skyline | None = field(default=None, repr=False)
     problem: Problem = field(default_factory=Problem, repr=False)
-
-    apart = ("skyline",)                                 # its arrays run along the horizon, not over lanes
 
     def __post_init__(self):
         if self.start_utc is not None:
             try:
-                datetime.fromisoformat(self.start_utc)
-            except (TypeError, ValueError):
+                julian_date(self.start_utc if isinstance(self.start_utc, str) else "")
+            except ValueError:
                 raise ValueError("start_utc must be an ISO date and time, such as '2026-11-26T12:00', or None; "
                                  f"got {self.start_utc!r}") from None
+        if self.skyline is not None:
+            object.__setattr__(self, "skyline", Skyline.of(self.skyline))
         if not isinstance(self.soil, Soil):
             raise ValueError(f"soil must be a Soil, such as rdk.soil('apollo-nominal'); got {self.soil!r}")
         super().__post_init__()

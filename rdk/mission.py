@@ -4,8 +4,9 @@ The chain couples the physics modules as the paper does: total mass sets the whe
 torque, torque and sunlight set the speed, and the march through the mission sets charge and range. Slope and soil
 are constant, so the wheel is solved once, outside the march.
 
-Limits: constant slope, homogeneous soil, sunrise at the start, a sun on the equator, equal wheel loads. The range
-is what the energy allows under the duty cycle, not an operational estimate.
+Limits: constant slope, homogeneous soil, equal wheel loads; without `Scenario.start_utc` sunrise at the start and a
+sun on the equator, without `skyline` a level horizon. The thermal cases know neither: they are the paper's noon and
+night at the latitude. The range is what the energy allows under the duty cycle, not an operational estimate.
 """
 from dataclasses import dataclass, field
 from functools import partial
@@ -13,7 +14,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from . import power, terramechanics, thermal
+from . import power, sky, terramechanics, thermal
 from ._fields import Later, Record, together
 from .design import Design, Model, Scenario, warn_outside
 from .mass import MassBreakdown, mass_breakdown
@@ -31,11 +32,11 @@ _MARCHED = (                                             # what the march reads 
     ("wheel_radius_m", "wheel_count", "solar_area_m2", "battery_capacity_wh", "avionics_power_w",
      "peak_wheel_torque_nm"),
     ("latitude_deg", "duty_cycle", "traverse_limit_km", "payload_power_w", "panel_tilt_deg", "panel_azimuth_deg",
-     "maximum_speed_m_s"),
+     "maximum_speed_m_s", "start_utc", "longitude_deg", "skyline"),
     ("solar_constant_w_m2", "panel_efficiency", "dust_factor", "synodic_day_h", "drivetrain_efficiency",
      "hub_no_load_speed_rad_s", "motor_droop", "soc_initial", "soc_floor", "charge_efficiency",
      "discharge_efficiency", "stop_at_limit", "exact_floor"))
-_WAITING = (("scenario", "start_utc", None), ("scenario", "skyline", None), ("model", "kernel", "paper"),
+_WAITING = (("model", "kernel", "paper"),
             ("model", "sinkage_scale", 1.0), ("model", "axle_torque", 0))
 
 
@@ -307,10 +308,25 @@ def _step_times(scenario, model):
     return times, np.diff(times, prepend=0.0)
 
 
+def _sun(time_h, lane):
+    """Hour angle and declination at times (down): of the paper's sun, or of the real one since `start_utc`."""
+    if lane.start_utc is None:
+        return power.hour_angle_deg(time_h[:, None], lane.synodic_day_h), 0.0
+    declination, noon = sky.subsolar_point(sky.julian_date(lane.start_utc) + time_h[:, None] / 24)
+    return (lane.longitude_deg - noon + 180) % 360 - 180, declination
+
+
 def _incidence(time_h, lane):
-    """cos(i) at times (down) for lanes (across); one column where the lanes share sun and panel."""
-    hour_angle = power.hour_angle_deg(time_h[:, None], lane.synodic_day_h)
-    return power.incidence_factor(lane.latitude_deg, hour_angle, lane.panel_tilt_deg, lane.panel_azimuth_deg)
+    """cos(i) at times (down) for lanes (across), times the share of the disc above the skyline where there is one.
+
+    One column where the lanes share sun and panel.
+    """
+    hour_angle, declination = _sun(time_h, lane)
+    lit = None
+    if lane.skyline is not None:
+        lit = sky.lit_fraction(*power.sun_position(lane.latitude_deg, hour_angle, declination), lane.skyline)
+    return power.incidence_factor(lane.latitude_deg, hour_angle, lane.panel_tilt_deg, lane.panel_azimuth_deg,
+                                  declination, lit)
 
 
 def _arrival_h(march, shape):
@@ -452,7 +468,7 @@ def _log(lane, times, steps, solar, base_load, mobility, stored, soc, initial, t
     net = solar - load
     accepted = np.maximum(change, 0) / lane.charge_efficiency
     delivered = np.maximum(-change, 0) * lane.discharge_efficiency
-    elevation, _ = power.sun_position(lane.latitude_deg, power.hour_angle_deg(times, lane.synodic_day_h))
+    elevation, _ = power.sun_position(lane.latitude_deg, *(np.ravel(angle) for angle in _sun(times, lane)))
     return TraverseLog(
         time_h=times, step_h=steps, sun_elevation_deg=elevation, solar_w=solar, load_w=load, mobility_w=mobility,
         stored_wh=stored, soc=soc, throttled=throttled,

@@ -1,7 +1,7 @@
 """Sunlight, panel power and the battery of a rover on the Moon.
 
-Closed-form solar geometry on a smooth sphere (Duffie & Beckman 2013): no horizon mask, no shadows, no libration.
-At the poles this keeps the low sun and leaves out what the terrain does to it, which may matter more.
+Closed-form solar geometry on a smooth sphere (Duffie & Beckman 2013). At the poles this keeps the low sun and leaves
+out what the terrain does to it, which matters more: `rdk.sky` has the real sun and the share of it above a skyline.
 Azimuths run from north, clockwise: 0 north, 90 east, 180 south.
 """
 from __future__ import annotations
@@ -54,7 +54,7 @@ def sun_position(latitude_deg, hour_angle, declination_deg=0.0):
     return np.degrees(np.arcsin(np.clip(up, -1, 1))), np.degrees(np.arctan2(east, north)) % 360
 
 
-def incidence_factor(latitude_deg, hour_angle, tilt_deg=0.0, azimuth_deg=180.0, declination_deg=0.0):
+def incidence_factor(latitude_deg, hour_angle, tilt_deg=0.0, azimuth_deg=180.0, declination_deg=0.0, lit=None):
     """cos(i) on a tilted panel, eq. solar-incidence: 0 where the sun is down or behind the panel.
 
     Parameters
@@ -63,6 +63,9 @@ def incidence_factor(latitude_deg, hour_angle, tilt_deg=0.0, azimuth_deg=180.0, 
         As in `sun_position`.
     tilt_deg, azimuth_deg : float or ndarray
         Panel tilt from the horizontal and the direction it faces, in degrees.
+    lit : float or ndarray, optional
+        Share of the solar disc above the skyline, from `rdk.sky.lit_fraction`: it takes the place of the cut at the
+        level horizon, below which a ridge still sees the sun.
 
     Returns
     -------
@@ -72,7 +75,8 @@ def incidence_factor(latitude_deg, hour_angle, tilt_deg=0.0, azimuth_deg=180.0, 
     east, north, up = _sun_vector(latitude_deg, hour_angle, declination_deg)
     tilt, azimuth = np.radians(tilt_deg), np.radians(azimuth_deg)
     cos_i = up * np.cos(tilt) + np.sin(tilt) * (north * np.cos(azimuth) + east * np.sin(azimuth))
-    return np.where(up > HORIZON, np.maximum(cos_i, 0.0), 0.0)[()]
+    facing = np.maximum(cos_i, 0.0)
+    return (np.where(up > HORIZON, facing, 0.0) if lit is None else facing * lit)[()]
 
 
 def panel_power(area_m2, incidence, *, efficiency=0.28, dust_factor=0.9, solar_constant_w_m2=1361.0):

@@ -6,6 +6,7 @@ longitudes positive, azimuths clockwise from north.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 
 import numpy as np
 
@@ -93,7 +94,8 @@ def julian_date(utc):
     """
     try:
         if isinstance(utc, str):
-            utc = np.datetime64(utc.removesuffix("Z"))
+            when = datetime.fromisoformat(utc)
+            utc = np.datetime64(when if when.tzinfo is None else when.astimezone(UTC).replace(tzinfo=None))
         seconds = (np.asarray(utc, "datetime64[ms]") - np.datetime64("2000-01-01T12")).astype(float) / 1000
     except (ValueError, TypeError):
         raise ValueError(f"a date must be UTC in ISO form, such as '2026-07-01T12:00'; got {utc!r:.80}") from None

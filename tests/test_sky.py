@@ -1,6 +1,7 @@
 """The sun over the Moon at a date, skylines, and published light."""
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -111,7 +112,8 @@ def test_sites_and_heights():
     assert len(sites) == 16 and sites["shackleton_floor"]["heights_m"] == (1, 2, 10)
     for site, about in sites.items():
         seen = rdk.skyline(site)
-        assert (seen.latitude_deg, seen.longitude_deg, seen.height_m) == (about["latitude_deg"], about["longitude_deg"], 2)
+        assert seen.height_m == 2
+        assert (seen.latitude_deg, seen.longitude_deg) == (about["latitude_deg"], about["longitude_deg"])
         assert len(seen.azimuth_deg) == len(seen.elevation_deg) == 360
     with pytest.raises(ValueError, match="'shackleton_rimm'.*shackleton_rim"):
         rdk.skyline("shackleton_rimm")
@@ -165,7 +167,8 @@ def test_light_grows_with_the_sun_and_shrinks_with_the_terrain(elevation, azimut
     here, above = np.full(8, level), np.full(8, level + rise)
     lit = sky.lit_fraction(elevation, azimuth, here)
     assert 0 <= lit <= 1 and sky.lit_fraction(elevation, azimuth, above) <= lit
-    np.testing.assert_allclose(sky.lit_fraction(elevation + rise, azimuth, above), lit, atol=1e-6)   # only the difference
+    # only the difference counts
+    np.testing.assert_allclose(sky.lit_fraction(elevation + rise, azimuth, above), lit, atol=1e-6)
 
 
 def test_light_broadcasts():
@@ -181,7 +184,8 @@ def test_no_light_on_the_floor_of_shackleton():
 
 @pytest.mark.parametrize("site", rdk.skyline_sites())
 def test_light_never_falls_with_height(site):
-    assert np.all(light(site, 2) >= light(site, 1) - 0.03)   # hour by hour: the table rounds to 0.01 deg, 2 % of the disc
+    # hour by hour: the table rounds to 0.01 deg, 2 % of the disc
+    assert np.all(light(site, 2) >= light(site, 1) - 0.03)
     shares = [light(site, height).mean() for height in (1, 2, 10)]
     assert shares == sorted(shares)
 
@@ -217,3 +221,92 @@ def test_a_level_skyline_gives_the_papers_light():
 def test_longest_run():
     assert sky.longest_run([True, True, False, True], 2.0) == 4.0 and sky.longest_run([False]) == 0
     assert sky.longest_run(np.ones(5)) == 5 and sky.longest_run([]) == 0
+
+
+# ---- missions ----------------------------------------------------------------------------------------------
+
+POLAR, ROVER = rdk.scenario("polar_prospecting"), rdk.rover("MoonRanger")
+
+
+def at_site(site, height_m=2, **more):
+    seen = rdk.skyline(site, height_m)
+    return replace(POLAR, latitude_deg=seen.latitude_deg, longitude_deg=seen.longitude_deg, skyline=seen, **more)
+
+
+def test_a_mission_marches_under_the_real_sun():
+    mission = at_site("connecting_ridge_spot_1", start_utc="2026-06-01T06:00")
+    log = rdk.evaluate(ROVER, mission).log
+    dates = sky.julian_date("2026-06-01T06:00") + log.time_h / 24
+    elevation, azimuth = sky.sun_position(mission.latitude_deg, mission.longitude_deg, dates)
+    np.testing.assert_allclose(log.sun_elevation_deg, elevation, atol=1e-9)
+    tilt, towards = np.radians([mission.panel_tilt_deg, mission.panel_azimuth_deg])
+    e, a = np.radians([elevation, azimuth])
+    facing = np.sin(e) * np.cos(tilt) + np.cos(e) * np.sin(tilt) * np.cos(a - towards)
+    lit = sky.lit_fraction(elevation, azimuth, mission.skyline)
+    expected_w = power.panel_power(ROVER.solar_area_m2, np.maximum(facing, 0) * lit)
+    np.testing.assert_allclose(log.solar_w, expected_w, atol=1e-9)
+    assert (log.solar_w[elevation < -0.5] > 0).any(), "a ridge sees the sun below the level horizon"
+    change = np.diff(log.stored_wh, prepend=ROVER.battery_capacity_wh) / log.step_h
+    np.testing.assert_allclose(log.solar_w + log.unserved_w, log.load_w + log.discarded_w + log.battery_loss_w + change,
+                               atol=1e-6)
+
+
+def test_a_season_without_a_skyline_keeps_the_level_cut():
+    log = rdk.evaluate(ROVER, replace(POLAR, start_utc="2026-06-01")).log
+    assert np.all(log.solar_w[log.sun_elevation_deg < 0] == 0) and log.solar_w.max() > 0
+
+
+def test_a_skyline_without_a_date_shades_the_papers_sun():
+    shaded = rdk.evaluate(ROVER, replace(POLAR, skyline=np.full(36, 3.0))).log
+    plain = rdk.evaluate(ROVER, POLAR).log
+    assert np.array_equal(shaded.sun_elevation_deg, plain.sun_elevation_deg)
+    low = plain.sun_elevation_deg < 3 - sky.SUN_RADIUS_DEG
+    assert np.all(shaded.solar_w[low] == 0) and plain.solar_w[low].any()
+    high = plain.sun_elevation_deg > 3 + sky.SUN_RADIUS_DEG
+    np.testing.assert_allclose(shaded.solar_w[high], plain.solar_w[high], rtol=1e-12)
+
+
+@pytest.mark.parametrize("latitude, change", [(-85.0, 0.001), (-89.45, 0.02)])
+def test_a_level_skyline_gives_a_mission_the_papers_energy(latitude, change):
+    mission = replace(POLAR, latitude_deg=latitude)
+    level = rdk.evaluate(ROVER, replace(mission, skyline=np.zeros(360)))
+    paper = rdk.evaluate(ROVER, mission)
+    np.testing.assert_allclose(level.average_solar_power_w, paper.average_solar_power_w, rtol=change)
+
+
+def test_no_power_on_the_floor_of_shackleton():
+    dark = rdk.evaluate(rdk.random_designs(20, seed=1), at_site("shackleton_floor", start_utc="2026-12-01"))
+    assert np.all(dark.average_solar_power_w == 0) and np.all(dark.range_km == 0) and not dark.feasible.any()
+
+
+def test_sites_broadcast():
+    designs = rdk.random_designs(400, seed=2)            # more than one block of lanes
+    mission = at_site("shackleton_rim", start_utc="2026-10-01")
+    many = rdk.evaluate(designs, mission)
+    for i in (0, 199, 399):
+        one = rdk.evaluate(designs[i], mission)
+        np.testing.assert_allclose([many.range_km[i], many.final_soc[i], many.energy_balance_pct[i]],
+                                   [one.range_km, one.final_soc, one.energy_balance_pct], rtol=1e-9)
+    longitudes = np.array([0.0, 90.0, 205.0])
+    spread = rdk.evaluate(ROVER, replace(mission, longitude_deg=longitudes))
+    for longitude, average in zip(longitudes, spread.average_solar_power_w):
+        single = rdk.evaluate(ROVER, replace(mission, longitude_deg=longitude))
+        np.testing.assert_allclose(average, single.average_solar_power_w, rtol=1e-12)
+    assert spread.average_solar_power_w[0] != spread.average_solar_power_w[1]
+
+
+def test_the_heat_of_a_mission_knows_no_site():
+    here, paper = rdk.evaluate(ROVER, at_site("shackleton_floor", start_utc="2026-10-01")), rdk.evaluate(
+        ROVER, replace(POLAR, latitude_deg=rdk.skyline("shackleton_floor").latitude_deg))
+    assert (here.hot_temperature_c, here.cold_temperature_c) == (paper.hot_temperature_c, paper.cold_temperature_c)
+
+
+def test_scenarios_take_dates_and_skylines():
+    mission = replace(POLAR, start_utc="2026-06-01", skyline=rdk.skyline("shackleton_rim"))
+    assert mission == replace(mission) and mission != replace(mission, skyline=None)
+    assert replace(POLAR, skyline=list(np.zeros(12))).skyline == Skyline(np.arange(12) * 30, np.zeros(12))
+    for wrong in ("tomorrow", 2026, np.datetime64("2026-01-01")):
+        with pytest.raises(ValueError, match="start_utc must be an ISO date"):
+            replace(POLAR, start_utc=wrong)
+    with pytest.raises(ValueError, match="skyline must be a Skyline"):
+        replace(POLAR, skyline="shackleton_rim")
