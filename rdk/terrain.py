@@ -120,7 +120,7 @@ class Terrain:
         rows, columns = self.height_m.shape
         row, column = (self.north_m - y) / self.step_m - 0.5, (x - self.west_m) / self.step_m - 0.5
         inside = (row >= 0) & (row <= rows - 1) & (column >= 0) & (column <= columns - 1)
-        i = np.clip(np.where(inside, row, 0), 0, rows - 2).astype(np.intp)       # outside, read some cell: it becomes NaN
+        i = np.clip(np.where(inside, row, 0), 0, rows - 2).astype(np.intp)       # outside, any cell: it becomes NaN
         k = np.clip(np.where(inside, column, 0), 0, columns - 2).astype(np.intp)
         down, right, flat = row - i, column - k, self.height_m.ravel()
         i *= columns
@@ -334,7 +334,7 @@ def _geotiff(path):
     north = y + (k + middle) * step_x - number("ProjFalseNorthingGeoKey", "ProjFalseOriginNorthingGeoKey")
     far = max(abs(west), abs(north), abs(west + height.shape[1] * step_x), abs(north - height.shape[0] * step_x))
     if projection in (1, 21) and far > 100e3:            # near its centre every such plane is the tangent one
-        raise ValueError(f"{path.name}: this projection is read within 100 km of its centre; the map reaches {far:.0f} m")
+        raise ValueError(f"{path.name}: this projection is read within 100 km of its centre; it reaches {far:.0f} m")
     return Terrain(height, step_x, west, north, latitude, longitude,
                    _moon(path, number("GeogSemiMajorAxisGeoKey", default=np.nan)), path.stem)
 

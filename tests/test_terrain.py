@@ -21,7 +21,8 @@ R = terrain.RADIUS_M
 def plane(east=0.0, north=0.0, cells=40, step_m=10.0, **place):
     """A tilted plane, x and y from the middle."""
     middle = (np.arange(cells) + 0.5 - cells / 2) * step_m
-    return Terrain(100 + east * middle + north * -middle[:, None], step_m, -cells * step_m / 2, cells * step_m / 2, **place)
+    edge = cells * step_m / 2
+    return Terrain(100 + east * middle + north * -middle[:, None], step_m, -edge, edge, **place)
 
 
 def targets(kind):
@@ -70,7 +71,8 @@ def test_nothing_is_known_outside_or_beside_a_hole():
     holed = ground.height_m.copy()
     holed[5, 7] = np.nan
     holed = Terrain(holed, 10, -200, 200)
-    assert np.isnan(holed.at(*holed.place(5.4, 7.0))) and np.isfinite(holed.at(*holed.place(7.0, 7.0)))
+    assert np.isnan(holed.at(*holed.place(5.4, 7.0)))
+    assert np.isfinite(holed.at(*holed.place(7.0, 7.0)))
     with pytest.raises(ValueError, match="no height is known"):
         holed.skyline(*holed.place(5, 7))
 
@@ -78,7 +80,8 @@ def test_nothing_is_known_outside_or_beside_a_hole():
 @pytest.mark.parametrize("change, words", [
     (dict(height_m=np.zeros(5)), "grid of at least 2 x 2"), (dict(height_m=np.full((3, 3), np.nan)), "not NaN alone"),
     (dict(height_m=np.full((3, 3), np.inf)), "finite"), (dict(step_m=0.0), "step_m must be positive"),
-    (dict(step_m=[1.0, 2.0]), "step_m must be one number"), (dict(latitude_deg=91), "latitude_deg must be at least -90")])
+    (dict(step_m=[1.0, 2.0]), "step_m must be one number"),
+    (dict(latitude_deg=91), "latitude_deg must be at least -90")])
 def test_bad_maps_are_refused(change, words):
     with pytest.raises(ValueError, match=words):
         Terrain(**dict(height_m=np.zeros((3, 3)), step_m=1.0) | change)
@@ -133,9 +136,10 @@ def test_azimuths_run_clockwise_from_north():
     for place, azimuth in ((dict(latitude_deg=20.0, longitude_deg=30.0), 90.0), (dict(latitude_deg=-88.0), 90.0)):
         seen = Terrain(height, 10, -1000, 1000, **place).skyline(0.0, 0.0)
         assert abs(seen.azimuth_deg[np.argmax(seen.elevation_deg)] - azimuth) < 12
-    polar = Terrain(height, 10, 19_000, 1000)            # the block stands between the point and 90 E, farther from the pole
-    seen = polar.skyline(20_000.0, 0.0)
-    assert min(seen.azimuth_deg[seen.elevation_deg > 2].max(), 360 - seen.azimuth_deg[seen.elevation_deg > 2].max()) < 12
+    # near the south pole, on the meridian of 90 E: the same block now stands farther from the pole, to the north
+    seen = Terrain(height, 10, 19_000, 1000).skyline(20_000.0, 0.0)
+    block = seen.azimuth_deg[seen.elevation_deg > 2]
+    assert len(block) and np.all((block < 12) | (block > 348))
 
 
 @given(st.floats(0, 50), st.floats(0, 50), st.integers(0, 3))
@@ -157,7 +161,8 @@ def test_nested_maps():
     middle = wide.at(*np.meshgrid((np.arange(20) - 9.5) * 100, -(np.arange(20) - 9.5) * 100))
     fine = Terrain(middle, 100, -1000, 1000)
     alone, nested = fine.skyline(0.0, 0.0, 5.0), fine.skyline(0.0, 0.0, 5.0, beyond=[wide])
-    assert np.all(nested.elevation_deg >= alone.elevation_deg) and np.any(nested.elevation_deg > alone.elevation_deg + 1)
+    gained = nested.elevation_deg - alone.elevation_deg
+    assert gained.min() >= 0 and gained.max() > 1
     # the fine map repeats what the wide one says: the same skyline as from one map, to the sampling of steep edges
     assert np.abs(nested.elevation_deg - wide.skyline(0.0, 0.0, 5.0).elevation_deg).mean() < 0.2
     twice = fine.skyline(0.0, 0.0, 5.0, beyond=[fine, wide])
@@ -201,7 +206,8 @@ def write_pds(folder, raw, name="LDEM_TEST", **words):
     kind, bits = kinds[raw.dtype.str]
     raw.tofile(folder / f"{name}.IMG")
     words = dict(name=name, rows=4, columns=6, kind=kind, bits=bits, unit="METER", scale=0.5, offset="1737400.",
-                 projection="POLAR STEREOGRAPHIC", radius=1737.4, step=120.0, per="METERS/PIXEL", line=1.5, sample=2.5) | words
+                 projection="POLAR STEREOGRAPHIC", radius=1737.4, step=120.0, per="METERS/PIXEL",
+                 line=1.5, sample=2.5) | words
     (folder / f"{name}.LBL").write_text(LABEL.format(**words), encoding="latin-1")
     return folder / f"{name}.IMG"
 
@@ -228,7 +234,8 @@ def test_pds_kilometres_and_holes(tmp_path, kind):
         "  UNIT ", "  MISSING_CONSTANT = -9999\n  UNIT "))
     ground = terrain.read(path)
     assert np.isnan(ground.height_m[2, 3]) and np.isnan(ground.height_m).sum() == 1
-    np.testing.assert_allclose(np.delete(ground.height_m, 15), np.delete(RAW, 15), atol=1e-3)    # 32 bits of a kilometre
+    # 32 bits of a kilometre
+    np.testing.assert_allclose(np.delete(ground.height_m, 15), np.delete(RAW, 15), atol=1e-3)
     assert ground.step_m == 120
 
 
@@ -344,8 +351,8 @@ def test_synthetic_ground_is_the_seeds_own():
     assert one.step_m == 10 and terrain.synthetic(3, cells=64, step_m=5).step_m == 5
     np.testing.assert_allclose(terrain.synthetic(3, cells=64, step_m=5).slope(), one.slope(), rtol=1e-9)
     np.testing.assert_allclose(one.to_latlon(0, 0), (-85, 0), atol=1e-9)
-    for wrong, words in ((dict(like="connecting_ridge"), "nearest are .*connecting_ridge_10m"), (dict(cells=8), "cells"),
-                         (dict(seed=-1), "seed"), (dict(step_m=0), "step_m")):
+    for wrong, words in ((dict(like="connecting_ridge"), "nearest are .*connecting_ridge_10m"),
+                         (dict(cells=8), "cells"), (dict(seed=-1), "seed"), (dict(step_m=0), "step_m")):
         with pytest.raises(ValueError, match=words):
             terrain.synthetic(**dict(seed=1) | wrong)
 
@@ -354,7 +361,7 @@ def test_craters_are_holes():
     ground = terrain.synthetic(1, cells=128)
     # a field of Gaussian hills has no sense of up and down; bowls with rims make the curvature skew
     bend = sum(np.roll(ground.height_m, shift, axis) for shift in (1, -1) for axis in (0, 1)) - 4 * ground.height_m
-    assert ((bend - bend.mean())**3).mean() / bend.std()**3 < -0.3 or ((bend - bend.mean())**3).mean() / bend.std()**3 > 0.3
+    assert ((bend - bend.mean())**3).mean() / bend.std()**3 < -0.3
 
 
 # ---- the real maps -----------------------------------------------------------------------------------------
@@ -405,7 +412,8 @@ def test_tabulated_skylines_come_out_of_the_real_maps(maps):
 
 @real_maps
 def test_slopes_of_the_real_maps_are_the_tabulated_ones():
-    for name in ("connecting_ridge_10m", "shoemaker_rim_5m", "aristarchus_imp_5m_height", "aristarchus_peak_214m_height"):
+    for name in ("connecting_ridge_10m", "shoemaker_rim_5m", "aristarchus_imp_5m_height",
+                 "aristarchus_peak_214m_height"):
         ground = terrain.read(SHARED / f"{name}.png")
         shares = 100 * np.histogram(ground.slope(), np.arange(46))[0] / ground.height_m.size
         table = [float(row[f"{name}_pct"]) for row in catalog.rows("slope_histograms.csv")]
