@@ -455,18 +455,18 @@ def _seconds(designs, scenario):
 
 def stress_integrals(designs, scenario):
     """How often an evaluation integrates the stresses around a contact arc, mean over the designs."""
-    count, forces = 0, contact.forces
+    count, arcs = 0, contact.Arcs
 
     def counted(theta_1, *arguments, **options):
         nonlocal count
         count += np.size(theta_1)
-        return forces(theta_1, *arguments, **options)
+        return arcs(theta_1, *arguments, **options)
 
-    contact.forces = counted
+    contact.Arcs = counted
     try:
         evaluate(designs, scenario)
     finally:
-        contact.forces = forces
+        contact.Arcs = arcs
     return count / len(designs)
 
 

@@ -11,19 +11,22 @@ How it is solved. Each contact arc is mapped to [0, 1] and integrated by Gauss-L
 move smoothly with entry angle and slip, and the exact derivatives of the forces come with the forces.
 Entry angle, slip and slope capability are then Newton iterations over all lanes at once, with a bracket to
 fall back on; a lane leaves the batch as soon as it has converged.
-"""
-from __future__ import annotations
 
+Arrays broadcast; a float comes back where every input is one. Inputs out of range, not finite or of lengths that
+disagree raise a ValueError.
+"""
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypedDict, Unpack
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from . import _contact
-from ._fields import Record, check, number, together
+from . import _arc, _contact
+from ._fields import Record, check, number, together, unknown
 
 SLIP_MIN, SLIP_MAX = -0.9, 0.95                          # where the slip balance is sought
 CAPABILITY_SLIP, CAPABILITY_LIMIT_DEG = 0.6, 35.0        # peak-pull convention; steepest slope reported
+KERNELS = {"paper": (_contact, 0.4, 0.2), "imposed-arc": (_arc, 0.18, 0.32)}     # with their c_1 and c_2
 
 
 @dataclass(frozen=True)
@@ -46,11 +49,6 @@ class Soil(Record):
         Shear-deformation modulus K in mm, positive.
     name : str
         A label; nothing is computed from it.
-
-    Raises
-    ------
-    ValueError
-        If a value is outside these limits or not finite, or if array lengths disagree.
 
     References
     ----------
@@ -77,11 +75,6 @@ class Wheel(Record):
         h_g in metres, zero or more.
     grouser_count : int or ndarray
         N_g, a whole number, zero or more.
-
-    Raises
-    ------
-    ValueError
-        If a value is outside these limits or not finite, or if array lengths disagree.
     """
     radius_m: float = number(above=0)
     width_m: float = number(above=0)
@@ -89,16 +82,57 @@ class Wheel(Record):
     grouser_count: int = number(0, whole=True, default=0)
 
 
+class KernelOptions(TypedDict, total=False):
+    """The options that every solver here takes by keyword: how the soil answers.
+
+    Parameters
+    ----------
+    kernel : str
+        "paper" (default): the entry angle is the one whose stresses carry the load. "imposed-arc": static sinkage and a
+        factor for slip fix the entry angle, and the load fixes how hard the arc presses. Its sinkage errs half as much
+        on the measured wheels, its pull does not err less: a second opinion. Smooth wheels above slip 0.6 sink too far
+        in it; at slip near 0 its stress level is near 2, since a rolling wheel's arc has one side and a static one two;
+        where cohesion alone more than carries the load the level is negative.
+    transition_c1, transition_c2 : float or ndarray
+        theta_m = (c_1 + c_2 |s|) theta_1 (Wong & Reece 1967). None, the default, is the kernel's own: 0.4 and 0.2, or
+        0.18 and 0.32 (their loose sand).
+    grouser_lift_cap : float or ndarray
+        Largest relative gain in shear by grousers, 0.6 by default.
+    shear_scale : float or ndarray
+        Multiplies the shear stress, 1 by default: the paper's robustness study.
+    sinkage_scale : float or ndarray
+        Multiplies the sinkage that is reported, 1 by default; the forces stay as they are.
+
+    References
+    ----------
+    Wong & Reece (1967), doi:10.1016/0022-4898(67)90105-X; Yoshida et al. (2003); Lyasko (2010).
+    """
+    kernel: str
+    transition_c1: ArrayLike | None
+    transition_c2: ArrayLike | None
+    grouser_lift_cap: ArrayLike
+    shear_scale: ArrayLike
+    sinkage_scale: ArrayLike
+
+
 class WheelForces(NamedTuple):
-    """What a wheel does at given load and slip; NaN where the wheel is buried."""
+    """What a wheel does at given load and slip; NaN where the wheel is buried.
+
+    `stress_level` is the factor on the normal stress: 1 in the paper's kernel.
+    """
     drawbar_pull_n: np.ndarray
     torque_nm: np.ndarray
     sinkage_m: np.ndarray
     entry_angle_rad: np.ndarray
+    stress_level: np.ndarray
 
 
 class SlipBalance(NamedTuple):
-    """Where the pull meets the demand; `stalled` where no slip can, `buried` where the soil cannot carry."""
+    """Where the pull meets the demand; NaN and stalled where the wheel is buried.
+
+    `stalled` where no slip of the interval meets it, `buried` where the soil cannot carry the wheel, `sliding` where it
+    cannot brake enough (stalled too, slip at the low end of the interval).
+    """
     slip: np.ndarray
     drawbar_pull_n: np.ndarray
     torque_nm: np.ndarray
@@ -106,6 +140,7 @@ class SlipBalance(NamedTuple):
     entry_angle_rad: np.ndarray
     stalled: np.ndarray
     buried: np.ndarray
+    sliding: np.ndarray
 
 
 class ContactStress(NamedTuple):
@@ -116,8 +151,8 @@ class ContactStress(NamedTuple):
     transition_angle_rad: np.ndarray
 
 
-def wheel_forces(wheel, soil, vertical_load_n, slip, *, transition_c1=0.4, transition_c2=0.2, grouser_lift_cap=0.6,
-                 shear_scale=1.0):
+def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: ArrayLike,
+                 **options: Unpack[KernelOptions]) -> WheelForces:
     """Drawbar pull, torque and sinkage of one wheel at given load and slip.
 
     The entry angle is the one at which the soil's vertical reaction equals the load (the paper's force
@@ -131,23 +166,13 @@ def wheel_forces(wheel, soil, vertical_load_n, slip, *, transition_c1=0.4, trans
         Load on the wheel in newtons, positive.
     slip : float or ndarray
         s = 1 - v / (omega r), eq. slip, from -1 to 1; negative when braking.
-    transition_c1, transition_c2 : float or ndarray
-        theta_m = (c_1 + c_2 |s|) theta_1 (Wong & Reece 1967).
-    grouser_lift_cap : float or ndarray
-        Largest relative gain in shear by grousers.
-    shear_scale : float or ndarray
-        Multiplies the shear stress: the paper's robustness study.
+    **options
+        See `KernelOptions`.
 
     Returns
     -------
     WheelForces
-        `drawbar_pull_n` (N), `torque_nm` (N m), `sinkage_m` (m), `entry_angle_rad` (rad), each with the broadcast
-        shape of all inputs, floats if every input is one. NaN where no entry angle in (0, 90 deg) carries the load.
-
-    Raises
-    ------
-    ValueError
-        If a load or slip is out of range or not finite, or if array lengths disagree.
+        NaN where no entry angle in (0, 90 deg) carries the load.
 
     References
     ----------
@@ -160,24 +185,20 @@ def wheel_forces(wheel, soil, vertical_load_n, slip, *, transition_c1=0.4, trans
     >>> f"{forces.drawbar_pull_n:.2f} N at {1000 * forces.sinkage_m:.1f} mm"
     '0.71 N at 5.7 mm'
     """
-    load = check("vertical_load_n", vertical_load_n, above=0)
-    slip = check("slip", slip, -1, 1)
-    lanes, shape = _lanes(wheel, soil, transition_c1, transition_c2, grouser_lift_cap, shear_scale, load, slip)
-
-    def solve(lanes):
-        patch, (load, slip) = lanes[:9], lanes[9:]
-        return _contact.carried(patch, slip, load)
-
-    return WheelForces(*_contact.in_blocks(solve, lanes, shape))
+    load, slip = check("vertical_load_n", vertical_load_n, above=0), check("slip", slip, -1, 1)
+    found = _solve("carried", wheel, soil, options, slip=slip, vertical_load_n=load)
+    return _reported(WheelForces(*found), options)
 
 
-def slip_balance(wheel, soil, vertical_load_n, required_pull_n, *, slip_min=SLIP_MIN, slip_max=SLIP_MAX,
-                 transition_c1=0.4, transition_c2=0.2, grouser_lift_cap=0.6, shear_scale=1.0):
+def slip_balance(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, required_pull_n: ArrayLike, *,
+                 slip_min: ArrayLike = SLIP_MIN, slip_max: ArrayLike = SLIP_MAX,
+                 **options: Unpack[KernelOptions]) -> SlipBalance:
     """The slip at which the drawbar pull equals the pull that the slope demands.
 
-    Two equations, vertical load and pull (eq. slip-balance), in two unknowns, entry angle and slip. Where the
-    pull exceeds the demand at both ends of the slip interval, slip is 0; where it falls short at both ends,
-    the wheel is stalled and slip is `slip_max`.
+    Two equations, vertical load and pull (eq. slip-balance), in two unknowns, entry angle and slip. Where the pull
+    falls short of the demand throughout the slip interval the wheel is stalled, at `slip_max`; where it exceeds it
+    throughout, the wheel slides, at `slip_min` (in an interval above 0 it rolls instead, without slip). Where the pull
+    peaks inside the interval and meets the demand twice, the lower slip is the answer.
 
     Parameters
     ----------
@@ -187,39 +208,17 @@ def slip_balance(wheel, soil, vertical_load_n, required_pull_n, *, slip_min=SLIP
         Load on and pull demanded from one wheel, in newtons; the load positive.
     slip_min, slip_max : float or ndarray
         Ends of the slip interval.
-    transition_c1, transition_c2, grouser_lift_cap, shear_scale : float or ndarray
-        As in `wheel_forces`.
-
-    Returns
-    -------
-    SlipBalance
-        `slip`, forces and sinkage there, `stalled`, `buried`; NaN (and stalled) where the wheel is buried.
-
-    Raises
-    ------
-    ValueError
-        If an input is out of range or not finite, or if array lengths disagree.
+    **options
+        See `KernelOptions`.
     """
-    load = check("vertical_load_n", vertical_load_n, above=0)
-    pull = check("required_pull_n", required_pull_n)
-    low = check("slip_min", slip_min, -1, 1)
-    high = check("slip_max", slip_max, -1, 1)
-    if np.any(np.asarray(low) >= high):
-        raise ValueError(f"slip_min must be below slip_max; got {slip_min} and {slip_max}")
-    lanes, shape = _lanes(wheel, soil, transition_c1, transition_c2, grouser_lift_cap, shear_scale, load, pull, low,
-                          high)
-
-    def solve(lanes):
-        patch, (load, pull, low, high) = lanes[:9], lanes[9:]
-        theta_high, _, pull_high = _contact.entry_angle(patch, high, load, np.zeros_like(load))
-        return _contact.slip_balance(patch, load, pull, low, high, theta_high, pull_high, np.full_like(load, 0.3))
-
-    return SlipBalance(*_contact.in_blocks(solve, lanes, shape))
+    found = _solve("balance", wheel, soil, options, vertical_load_n=check("vertical_load_n", vertical_load_n, above=0),
+                   required_pull_n=check("required_pull_n", required_pull_n), **_interval(slip_min, slip_max))
+    return _reported(SlipBalance(*found), options)
 
 
-def slope_capability(wheel, soil, weight_n, *, capability_slip=CAPABILITY_SLIP,
-                     capability_limit_deg=CAPABILITY_LIMIT_DEG, transition_c1=0.4, transition_c2=0.2,
-                     grouser_lift_cap=0.6, shear_scale=1.0):
+def slope_capability(wheel: Wheel, soil: Soil, weight_n: ArrayLike, *, capability_slip: ArrayLike = CAPABILITY_SLIP,
+                     capability_limit_deg: ArrayLike = CAPABILITY_LIMIT_DEG,
+                     **options: Unpack[KernelOptions]) -> float | np.ndarray:
     """Steepest slope that a wheel climbs at the slip of peak pull.
 
     On a slope alpha a wheel of weight w carries w cos(alpha) and must pull w sin(alpha). At fixed slip both are
@@ -235,35 +234,22 @@ def slope_capability(wheel, soil, weight_n, *, capability_slip=CAPABILITY_SLIP,
         Slip at which the pull is taken; 0.6 by the peak-pull convention (Wong 2008).
     capability_limit_deg : float or ndarray
         Steeper slopes are reported as this one.
-    transition_c1, transition_c2, grouser_lift_cap, shear_scale : float or ndarray
-        As in `wheel_forces`.
+    **options
+        See `KernelOptions`.
 
     Returns
     -------
     float or ndarray
         Slope in degrees: 0 where the wheel cannot move on the flat or is buried.
-
-    Raises
-    ------
-    ValueError
-        If an input is out of range or not finite, or if array lengths disagree.
     """
-    weight = check("weight_n", weight_n, above=0)
-    slip = check("capability_slip", capability_slip, -1, 1)
-    limit = check("capability_limit_deg", capability_limit_deg, 0, below=90)
-    lanes, shape = _lanes(wheel, soil, transition_c1, transition_c2, grouser_lift_cap, shear_scale, weight, slip, limit)
-
-    def solve(lanes):
-        patch, (weight, slip, limit) = lanes[:9], lanes[9:]
-        at_slip = _contact.entry_angle(patch, slip, weight, np.ones_like(weight))
-        return (_contact.slope(patch, slip, *at_slip, limit),)
-
-    return _contact.in_blocks(solve, lanes, shape)[0]
+    return _solve("capability", wheel, soil, options, weight_n=check("weight_n", weight_n, above=0),
+                  **_at_capability(capability_slip, capability_limit_deg))[0]
 
 
-def climb(wheel, soil, weight_n, slope_deg, *, slip_min=SLIP_MIN, slip_max=SLIP_MAX, capability_slip=CAPABILITY_SLIP,
-          capability_limit_deg=CAPABILITY_LIMIT_DEG, transition_c1=0.4, transition_c2=0.2, grouser_lift_cap=0.6,
-          shear_scale=1.0):
+def climb(wheel: Wheel, soil: Soil, weight_n: ArrayLike, slope_deg: ArrayLike, *, slip_min: ArrayLike = SLIP_MIN,
+          slip_max: ArrayLike = SLIP_MAX, capability_slip: ArrayLike = CAPABILITY_SLIP,
+          capability_limit_deg: ArrayLike = CAPABILITY_LIMIT_DEG,
+          **options: Unpack[KernelOptions]) -> tuple[SlipBalance, float | np.ndarray]:
     """Slip balance on a slope and slope capability in one call: what a mission needs of the wheel.
 
     Parameters
@@ -274,50 +260,25 @@ def climb(wheel, soil, weight_n, slope_deg, *, slip_min=SLIP_MIN, slip_max=SLIP_
         Weight on one wheel in newtons, positive.
     slope_deg : float or ndarray
         Slope to climb, in degrees, above -90 and below 90.
-    slip_min, slip_max, capability_slip, capability_limit_deg : float or ndarray
+    slip_min, slip_max, capability_slip, capability_limit_deg, **options
         As in `slip_balance` and `slope_capability`.
-    transition_c1, transition_c2, grouser_lift_cap, shear_scale : float or ndarray
-        As in `wheel_forces`.
 
     Returns
     -------
     SlipBalance
-        At load weight * cos(slope) and required pull weight * sin(slope).
+        At load weight * cos(slope) and required pull weight * sin(slope), eq. required-dp.
     float or ndarray
         Slope capability in degrees.
-
-    Raises
-    ------
-    ValueError
-        If an input is out of range or not finite, or if array lengths disagree.
     """
-    weight = check("weight_n", weight_n, above=0)
-    slope = np.radians(check("slope_deg", slope_deg, above=-90, below=90))
-    low, high = check("slip_min", slip_min, -1, 1), check("slip_max", slip_max, -1, 1)
-    slip = check("capability_slip", capability_slip, -1, 1)
-    limit = check("capability_limit_deg", capability_limit_deg, 0, below=90)
-    lanes, shape = _lanes(wheel, soil, transition_c1, transition_c2, grouser_lift_cap, shear_scale, weight, slope, low,
-                          high, slip, limit)
-
-    def solve(lanes):
-        patch, (weight, slope, low, high, slip, limit) = lanes[:9], lanes[9:]
-        load, count = weight * np.cos(slope), weight.size                # eq. required-dp
-        # both entry angles in one batch: a batch twice as long costs less than two batches
-        ends = _contact.entry_angle(np.tile(patch, 2), np.concatenate([high, slip]), np.concatenate([load, weight]),
-                                   np.repeat([0.0, 1.0], count))
-        (theta_high, _, pull_high), at_slip = ends[:, :count], ends[:, count:]
-        # slip grows almost alike in all wheels and soils with the demand's share of the pull at the capability slip
-        demand = np.tan(slope) * at_slip[1] / at_slip[2]
-        guess = np.nan_to_num(slip * np.clip(demand, 0.1, 1.5) ** 1.25, nan=0.5)
-        return (*_contact.slip_balance(patch, load, weight * np.sin(slope), low, high, theta_high, pull_high, guess),
-                _contact.slope(patch, slip, *at_slip, limit))
-
-    *balance, capability = _contact.in_blocks(solve, lanes, shape)
-    return SlipBalance(*balance), capability
+    *balance, capability = _solve(
+        "climb", wheel, soil, options, weight_n=check("weight_n", weight_n, above=0),
+        slope_deg=np.radians(check("slope_deg", slope_deg, above=-90, below=90)),
+        **_interval(slip_min, slip_max), **_at_capability(capability_slip, capability_limit_deg))
+    return _reported(SlipBalance(*balance), options), capability
 
 
-def contact_stress(wheel, soil, entry_angle_rad, slip, angle_rad, *, transition_c1=0.4, transition_c2=0.2,
-                   grouser_lift_cap=0.6, shear_scale=1.0):
+def contact_stress(wheel: Wheel, soil: Soil, entry_angle_rad: ArrayLike, slip: ArrayLike, angle_rad: ArrayLike, *,
+                   stress_level: ArrayLike = 1.0, **options: Unpack[KernelOptions]) -> ContactStress:
     """Normal and shear stress under the wheel at given angles, from the paper's stress distribution.
 
     Parameters
@@ -330,57 +291,43 @@ def contact_stress(wheel, soil, entry_angle_rad, slip, angle_rad, *, transition_
         From -1 to 1.
     angle_rad : float or ndarray
         theta in radians from the downward vertical; outside [0, theta_1] the stresses are 0.
-    transition_c1, transition_c2, grouser_lift_cap, shear_scale : float or ndarray
-        As in `wheel_forces`.
-
-    Returns
-    -------
-    ContactStress
-        `normal_stress_pa`, `shear_stress_pa` (Pa), `shear_displacement_m` (m), `transition_angle_rad` (rad), with the
-        broadcast shape of all inputs.
-
-    Raises
-    ------
-    ValueError
-        If an input is out of range or not finite, or if array lengths disagree.
+    stress_level : float or ndarray
+        Multiplies the normal stress; as `wheel_forces` returns it.
+    **options
+        See `KernelOptions`.
     """
-    entry = check("entry_angle_rad", entry_angle_rad, above=0, maximum=np.pi / 2)
-    slip = check("slip", slip, -1, 1)
-    angle = check("angle_rad", angle_rad)
-    lanes, shape = _lanes(wheel, soil, transition_c1, transition_c2, grouser_lift_cap, shear_scale, entry, slip, angle)
-
-    def stresses(lanes):
-        r, _, A, n, c, tan_phi, K, c1, c2, theta_1, s, theta = lanes
-        theta_m = (c1 + c2 * abs(s)) * theta_1                           # transition angle
+    def stresses(patch, theta_1, s, theta, level):
+        theta_m = (patch.c1 + patch.c2 * abs(s)) * theta_1               # transition angle
         theta_star = np.where(theta < theta_m, theta_1 - theta / theta_m * (theta_1 - theta_m), theta)
         inside = (theta >= 0) & (theta <= theta_1)
-        sigma = A * np.maximum(np.cos(theta_star) - np.cos(theta_1), 0) ** n        # eq. sigma
-        j = r * ((theta_1 - theta) - (1 - s) * (np.sin(theta_1) - np.sin(theta)))   # shear displacement
-        tau = (c + sigma * tan_phi) * -np.expm1(-abs(j) / K) * np.sign(j)           # eq. tau, gamma_g inside c, tan_phi
+        depth = np.maximum(np.cos(theta_star) - np.cos(theta_1), 0)
+        sigma = level * (patch.A * depth ** patch.n)                     # eq. sigma
+        # shear displacement
+        j = patch.r * ((theta_1 - theta) - (1 - s) * (np.sin(theta_1) - np.sin(theta)))
+        # eq. tau, gamma_g inside c and tan_phi
+        tau = (patch.c + sigma * patch.tan_phi) * -np.expm1(-abs(j) / patch.K) * np.sign(j)
         return sigma * inside, tau * inside, j * inside, theta_m
 
-    return ContactStress(*_contact.in_blocks(stresses, lanes, shape))
+    entry, slip = check("entry_angle_rad", entry_angle_rad, above=0, maximum=np.pi / 2), check("slip", slip, -1, 1)
+    angle, level = check("angle_rad", angle_rad), check("stress_level", stress_level)
+    return ContactStress(*_solve(stresses, wheel, soil, options, entry_angle_rad=entry, slip=slip, angle_rad=angle,
+                                 stress_level=level))
 
 
-def grouser_lift(wheel, grouser_lift_cap=0.6):
-    """Factor gamma_g by which engaged grousers raise the shear stress, eq. grouser; 1 for a smooth wheel.
+def grouser_lift(wheel: Wheel, grouser_lift_cap: ArrayLike = 0.6) -> float | np.ndarray:
+    """Factor 1 + min(N_g h_g / (2 pi r), cap) by which engaged grousers raise the shear stress, eq. grouser.
 
     Parameters
     ----------
     wheel : Wheel
     grouser_lift_cap : float or ndarray
         Largest gain, dimensionless; beyond it the shear planes of neighbouring grousers interfere.
-
-    Returns
-    -------
-    float or ndarray
-        1 + min(N_g h_g / (2 pi r), cap).
     """
     return 1 + np.minimum(wheel.grouser_count * wheel.grouser_height_m / (2 * np.pi * wheel.radius_m),
                           grouser_lift_cap)
 
 
-def compaction_resistance(wheel, soil, sinkage_m):
+def compaction_resistance(wheel: Wheel, soil: Soil, sinkage_m: ArrayLike) -> float | np.ndarray:
     """Force that compacting the rut costs: the work of Bekker's pressure down to the sinkage, per metre driven.
 
     A diagnostic: the kernel's drawbar pull already contains it.
@@ -401,7 +348,7 @@ def compaction_resistance(wheel, soil, sinkage_m):
     return wheel.width_m * _k_eff(wheel, soil) * z ** (n + 1) / (n + 1)
 
 
-# ---- the kernel -----------------------------------------------------------------------------------------------
+# ---- from records to lanes ------------------------------------------------------------------------------------
 
 def _k_eff(wheel, soil):
     """k_c / b + k_phi in Pa/m^n, eq. bekker; NaN where a fit's negative k_c makes it meaningless."""
@@ -409,25 +356,59 @@ def _k_eff(wheel, soil):
     return np.where(k > 0, k, np.nan)[()]
 
 
-def _patch(wheel, soil, transition_c1, transition_c2, grouser_lift_cap, shear_scale):
-    """What the stress integrals need, in SI: r, b, k_eff r^n, n, gamma c, gamma tan(phi), K, c_1, c_2."""
-    r, n = np.asarray(wheel.radius_m), soil.sinkage_exponent
-    gamma = grouser_lift(wheel, grouser_lift_cap) * shear_scale
-    return (r, wheel.width_m, _k_eff(wheel, soil) * r ** n, n, gamma * soil.cohesion_kpa * 1000,
-            gamma * np.tan(np.radians(soil.friction_angle_deg)), np.asarray(soil.shear_modulus_mm) / 1000,
-            transition_c1, transition_c2)
+def _interval(slip_min, slip_max):
+    low, high = check("slip_min", slip_min, -1, 1), check("slip_max", slip_max, -1, 1)
+    if np.any(np.asarray(low) >= high):
+        raise ValueError(f"slip_min must be below slip_max; got {slip_min} and {slip_max}")
+    return dict(slip_min=low, slip_max=high)
 
 
-def _lanes(wheel, soil, c1, c2, cap, shear_scale, *arrays):
-    """All inputs as rows of flat lanes, and the shape to give back."""
-    c1 = check("transition_c1", c1, 0, 1)
-    c2 = check("transition_c2", c2, 0, 1)
+def _at_capability(slip, limit_deg):
+    return dict(capability_slip=check("capability_slip", slip, -1, 1),
+                capability_limit_deg=check("capability_limit_deg", limit_deg, 0, below=90))
+
+
+def _reported(forces, options):
+    """Forces or balance with the sinkage as it is to be reported."""
+    return forces._replace(sinkage_m=forces.sinkage_m * np.asarray(options.get("sinkage_scale", 1.0)))
+
+
+def patch_of(wheel, soil, *, kernel="paper", transition_c1=None, transition_c2=None, grouser_lift_cap=0.6,
+             shear_scale=1.0, sinkage_scale=1.0, **arrays):
+    """The kernel's module, the patch and the arrays as flat lanes, and the shape to give back."""
+    if kernel not in KERNELS:
+        raise unknown("unknown kernel", kernel, list(KERNELS))
+    module, c1, c2 = KERNELS[kernel]
+    c1 = c1 if transition_c1 is None else check("transition_c1", transition_c1, 0, 1)
+    c2 = c2 if transition_c2 is None else check("transition_c2", transition_c2, 0, 1)
     if np.any(np.asarray(c1) + c2 > 1) or np.any(np.asarray(c1) <= 0):
-        raise ValueError(f"transition_c1 must be above 0 and transition_c1 + transition_c2 at most 1; got {c1} and {c2}")
-    cap = check("grouser_lift_cap", cap, 0)
-    shear_scale = check("shear_scale", shear_scale, above=0)
-    shape = together(wheel=wheel.shape, soil=soil.shape, transition_c1=np.shape(c1), transition_c2=np.shape(c2),
-                     grouser_lift_cap=np.shape(cap), shear_scale=np.shape(shear_scale),
-                     **{f"argument {i + 1}": np.shape(a) for i, a in enumerate(arrays)})
-    rows = (*_patch(wheel, soil, c1, c2, cap, shear_scale), *arrays)
-    return np.stack([np.broadcast_to(a, shape).ravel() for a in rows]), shape
+        raise ValueError("transition_c1 must be above 0 and transition_c1 + transition_c2 at most 1; "
+                         f"got {c1} and {c2}")
+    options = dict(transition_c1=c1, transition_c2=c2, grouser_lift_cap=check("grouser_lift_cap", grouser_lift_cap, 0),
+                   shear_scale=check("shear_scale", shear_scale, above=0),
+                   sinkage_scale=check("sinkage_scale", sinkage_scale, above=0))
+    shape = together(wheel=wheel.shape, soil=soil.shape,
+                     **{name: np.shape(value) for name, value in (options | arrays).items()})
+    r, n = np.asarray(wheel.radius_m), soil.sinkage_exponent
+    gamma = grouser_lift(wheel, options["grouser_lift_cap"]) * options["shear_scale"]
+    rows = (r, wheel.width_m, _k_eff(wheel, soil) * r ** n, n, gamma * soil.cohesion_kpa * 1000,
+            gamma * np.tan(np.radians(soil.friction_angle_deg)), np.asarray(soil.shear_modulus_mm) / 1000, c1, c2)
+    lanes = np.stack([np.broadcast_to(row, shape).ravel() for row in (*rows, *arrays.values())])
+    return module, _contact.Patch(*lanes[:len(rows)]), lanes[len(rows):], shape
+
+
+def _solve(solver, wheel, soil, options, **arrays):
+    """A solver of the kernel (or a function) on blocks of lanes that fit the cache; floats for one lane."""
+    for name in options:
+        if name not in KernelOptions.__annotations__:
+            raise TypeError(str(unknown("unexpected keyword argument", name, list(KernelOptions.__annotations__))))
+    module, patch, lanes, shape = patch_of(wheel, soil, **arrays, **options)
+    solve, count = solver if callable(solver) else getattr(module, solver), lanes.shape[1]
+    with np.errstate(all="ignore"):                      # a lane without a solution is NaN, not a warning
+        if not count:                                    # nothing to solve: one lane of ones shows the kinds
+            ones = np.ones((len(patch) + len(lanes), 1))
+            return [np.empty(shape, a.dtype) for a in solve(_contact.Patch(*ones[:len(patch)]), *ones[len(patch):])]
+        blocks = [slice(i, i + _contact.BLOCK) for i in range(0, count, _contact.BLOCK)]
+        parts = [solve(_contact.Patch(*[row[block] for row in patch]), *lanes[:, block]) for block in blocks]
+    joined = [np.concatenate(part).reshape(shape) for part in zip(*parts)]
+    return [a if shape else a.item() for a in joined]

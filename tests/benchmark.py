@@ -93,12 +93,12 @@ def kernel_evaluations():
         scenario, population, few = rdk.scenario(name), rdk.random_designs(2_000, seed=2), 20
         counts = dict.fromkeys(("solves", "integrals", "scalar solves", "scalar integrals"), 0)
         kept = {(module, function): getattr(module, function) for module, function in (
-            (contact, "forces"), (contact, "entry_angle"), (contact, "_newton_balance"),
+            (contact, "Arcs"), (contact, "entry_angle"), (contact, "newton_balance"),
             (scalar, "wheel_forces"),
             (scalar, "contact_integrals"))}
-        wrappers = {"forces": ("integrals", lambda a: a[0].size),
+        wrappers = {"Arcs": ("integrals", lambda a: a[0].size),
                     "entry_angle": ("solves", lambda a: a[1].size),
-                    "_newton_balance": ("solves", lambda a: a[1].size),
+                    "newton_balance": ("solves", lambda a: a[1].size),
                     "wheel_forces": ("scalar solves", lambda a: 1),
                     "contact_integrals": ("scalar integrals", lambda a: 1)}
         try:

@@ -56,5 +56,6 @@ package.__path__ = spec.submodule_search_locations
 sys.modules["rdk"] = package                             # the package without its __init__
 import rdk.{module}
 print(sorted(name for name in sys.modules if name.startswith("rdk.")))""")
-        above = {"rdk.power"} if module == "sky" else {"rdk._fields", "rdk._contact"}
+        private = {f"rdk.{name}" for name in ("_fields", "_contact", "_arc", "_roots")}
+        above = {"rdk.power"} if module == "sky" else private
         assert set(eval(found)) <= {f"rdk.{module}"} | above, module
