@@ -1,6 +1,4 @@
-"""Frozen records of numbers or arrays: checked when built, broadcast together, indexed by lane."""
-from __future__ import annotations
-
+"""Frozen records of numbers or arrays: checked when built, broadcast together, indexed by lane, shown as short tables."""
 import dataclasses
 import difflib
 import functools
@@ -9,21 +7,46 @@ import math
 
 import numpy as np
 
+_ANY = dict(minimum=-math.inf, maximum=math.inf, above=None, below=None, whole=False, choices=None, infinite=False,
+            scalar=False, optional=False)
 
-def number(minimum=-math.inf, maximum=math.inf, *, above=None, below=None, default=dataclasses.MISSING,
-           whole=False, choices=None, infinite=False, scalar=False, optional=False):
-    """A dataclass field that holds a real number, or an array of them, within limits.
+
+def number(minimum=-math.inf, maximum=math.inf, *, default=dataclasses.MISSING, **limits):
+    """A dataclass field that holds a real number, or an array of them, within the limits that `check` knows."""
+    return dataclasses.field(default=default, metadata=_ANY | dict(minimum=minimum, maximum=maximum) | limits)
+
+
+def _allowed(minimum, maximum, above, below, whole, choices, infinite, optional, **_):
+    """Words for what a field accepts."""
+    if choices:
+        return "one of " + ", ".join(f"{c:g}" for c in choices)
+    kind = "a whole number" if whole else ""
+    if above == 0 and maximum == math.inf and below is None:
+        span = "positive"
+    elif minimum == 0 and maximum == math.inf and below is None:
+        span = "zero or more"
+    else:
+        bounds = [f"above {above:g}" if above is not None else f"at least {minimum:g}" if minimum > -math.inf else "",
+                  f"below {below:g}" if below is not None else f"at most {maximum:g}" if maximum < math.inf else ""]
+        span = " and ".join(filter(None, bounds))
+    words = ", ".join(filter(None, [kind, span]))
+    return (words if kind or infinite else " and ".join(filter(None, [words, "finite"]))) + optional * " or None"
+
+
+def check(name, value, minimum=-math.inf, maximum=math.inf, **limits):
+    """`value` as a float or a read-only float array, or a ValueError that says what is allowed.
 
     Parameters
     ----------
+    name : str
+        Of the argument, for the message.
+    value : float or array_like
     minimum, maximum : float
         Inclusive limits.
     above, below : float, optional
         Exclusive limits, in place of `minimum` or `maximum`.
-    default : float, optional
-        Value of the field when none is given.
     whole : bool
-        Only whole numbers are allowed.
+        Only whole numbers are allowed; they come back as integers.
     choices : tuple of float, optional
         Only these values are allowed.
     infinite : bool
@@ -33,85 +56,47 @@ def number(minimum=-math.inf, maximum=math.inf, *, above=None, below=None, defau
     optional : bool
         None is allowed too.
     """
-    limits = dict(minimum=minimum, maximum=maximum, above=above, below=below, whole=whole, choices=choices,
-                  infinite=infinite, scalar=scalar, optional=optional)
-    return dataclasses.field(default=default, metadata=limits)
-
-
-def _allowed(limits):
-    """Words for what a field accepts."""
-    if limits["choices"]:
-        return "one of " + ", ".join(f"{c:g}" for c in limits["choices"])
-    kind = "a whole number" if limits["whole"] else ""
-    low, high = limits["minimum"], limits["maximum"]
-    if limits["above"] == 0 and high == math.inf and limits["below"] is None:
-        span = "positive"
-    elif low == 0 and high == math.inf and limits["below"] is None:
-        span = "zero or more"
-    else:
-        bounds = [f"above {limits['above']:g}" if limits["above"] is not None else
-                  f"at least {low:g}" if low > -math.inf else "",
-                  f"below {limits['below']:g}" if limits["below"] is not None else
-                  f"at most {high:g}" if high < math.inf else ""]
-        span = " and ".join(filter(None, bounds))
-    words = ", ".join(filter(None, [kind, span]))
-    return words if kind or limits["infinite"] else " and ".join(filter(None, [words, "finite"]))
-
-
-def check(name, value, minimum=-math.inf, maximum=math.inf, *, above=None, below=None, whole=False, choices=None,
-          infinite=False, scalar=False, optional=False):
-    """Return `value` as a float or a float array, or raise a ValueError that says what is allowed."""
-    if optional and value is None:
+    limits = _ANY | dict(minimum=minimum, maximum=maximum) | limits
+    if limits["optional"] and value is None:
         return None
-    limits = dict(minimum=minimum, maximum=maximum, above=above, below=below, whole=whole, choices=choices,
-                  infinite=infinite)
-    refusal = f"{name} must be {_allowed(limits)}{' or None' if optional else ''}; got "
+
+    def refusal(value):
+        return ValueError(f"{name} must be {_allowed(**limits)}; got {value}")
+
     if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
-        raise ValueError(refusal + repr(value))
+        raise refusal(repr(value))
+    if any(isinstance(part, np.ma.MaskedArray) for part in (value if isinstance(value, (list, tuple)) else [value])):
+        raise refusal("a masked array: fill or drop what is masked")
     try:
         array = np.asarray(value)
     except ValueError:                                   # nested lists of unequal length
-        raise ValueError(refusal + repr(value)) from None
+        raise refusal(repr(value)) from None
     if array.dtype.kind not in "iuf":
-        raise ValueError(refusal + repr(value))
+        raise refusal(repr(value))
     array = array.astype(float)                          # a copy: the caller's array may change later
-    if scalar and array.ndim:
+    if limits["scalar"] and array.ndim:
         raise ValueError(f"{name} must be one number, not an array; got {array.size} values")
+    above, below = limits["above"], limits["below"]
     good = np.isfinite(array)
-    if infinite:
+    if limits["infinite"]:
         good |= array == math.inf
     good &= (array >= minimum if above is None else array > above)
     good &= (array <= maximum if below is None else array < below)
-    if whole:
+    if limits["whole"]:
         good &= (array == np.floor(array)) & (np.abs(array) < 2**53)         # beyond, floats skip whole numbers
-    if choices:
-        good &= np.isin(array, choices)
+    if limits["choices"]:
+        good &= np.isin(array, limits["choices"])
     if not good.all():
         if not array.ndim:
-            raise ValueError(refusal + repr(value))
+            raise refusal(repr(value))
         first = tuple(int(i) for i in np.argwhere(~good)[0])
-        raise ValueError(refusal + f"{array[first].item()!r} at index {first[0] if len(first) == 1 else first}")
-    if whole or choices:
+        raise refusal(f"{array[first].item()!r} at index {first[0] if len(first) == 1 else first}")
+    if limits["whole"] or limits["choices"]:
         array = array.astype(int)
-    return array if array.ndim else array.item()
-
-
-def unknown(what, name, known):
-    """A ValueError for a name that nothing has: it offers the nearest, or all where none is near."""
-    near = difflib.get_close_matches(str(name), known, 3, cutoff=0.45)
-    return ValueError(f"{what} {name!r}; {'nearest are' if near else 'choose from'} {', '.join(near or known)}")
-
-
-class Shown:
-    """Base of results: as a cell's last line they are a heading and a short table, the pair that `_summary` returns."""
-
-    def __repr__(self):
-        heading, frame = self._summary()
-        return f"{heading}\n{frame.to_string(max_rows=10, float_format='{:.4g}'.format)}"
-
-    def _repr_html_(self):
-        heading, frame = self._summary()
-        return f"<p>{html.escape(heading)}</p>{frame.to_html(max_rows=10, border=0, float_format='{:.4g}'.format)}"
+    if not array.ndim:
+        return array.item()
+    array.flags.writeable = False
+    return array
 
 
 def together(**shapes):
@@ -125,14 +110,30 @@ def together(**shapes):
         raise ValueError(f"array lengths must agree or broadcast; got shapes {arrays}") from None
 
 
-@functools.cache
-def _limits(cls):
-    return tuple((f.name, dict(f.metadata)) for f in dataclasses.fields(cls) if f.metadata)
+def unknown(what, name, known):
+    """A ValueError for a name that nothing has: it offers the nearest, or all where none is near."""
+    near = difflib.get_close_matches(str(name), known, 3, cutoff=0.45)
+    return ValueError(f"{what} {name!r}; {'nearest are' if near else 'choose from'} {', '.join(near or known)}")
 
 
-@functools.cache
-def _names(cls):
-    return tuple(f.name for f in dataclasses.fields(cls))
+def require(**kinds):
+    """Refuse arguments, each given as name=(value, class), that are not of their class; say how to get one."""
+    for name, (value, kind) in kinds.items():
+        if not isinstance(value, kind):
+            got = repr(value) if isinstance(value, str) else type(value).__name__
+            raise TypeError(f"{name} must be a {kind.__name__}, such as {kind.example}; got {got}")
+
+
+class Shown:
+    """Base of results: as a cell's last line they are a heading and a short table, the pair that `_summary` returns."""
+
+    def __repr__(self):
+        heading, frame = self._summary()
+        return f"{heading}\n{frame.to_string(max_rows=12, float_format='{:.4g}'.format)}"
+
+    def _repr_html_(self):
+        heading, frame = self._summary()
+        return f"<p>{html.escape(heading)}</p>{frame.to_html(max_rows=12, border=0, float_format='{:.4g}'.format)}"
 
 
 class Later:
@@ -153,25 +154,49 @@ class Later:
         vars(record)[self.name] = value
 
 
-class Record:
+@functools.cache
+def _limits(cls):
+    return tuple((f.name, dict(f.metadata)) for f in dataclasses.fields(cls) if f.metadata)
+
+
+@functools.cache
+def _names(cls):
+    return tuple(f.name for f in dataclasses.fields(cls))
+
+
+class Record(Shown):
     """Base of the frozen dataclasses: numbers are checked, arrays broadcast, lanes can be picked."""
+
+    apart = ()                                           # fields whose arrays do not run over lanes
+    example = ""                                         # how to get one
+
+    def __init_subclass__(cls):
+        for name in ("__eq__", "__hash__", "__repr__"):  # in place of those that a dataclass writes
+            setattr(cls, name, getattr(Record, name))
 
     def __post_init__(self):
         for name, limits in _limits(type(self)):
             object.__setattr__(self, name, check(name, getattr(self, name), **limits))
-        shapes = {name: np.shape(value) for name, value in self._numbers().items()}
+        shapes = {}
+        for name, value in vars(self).items():
+            if isinstance(value, Record):
+                if name not in self.apart:
+                    shapes |= {f"{name}.{n}": np.shape(v) for n, v in value.numbers().items()}
+            elif isinstance(value, np.ndarray):
+                shapes[name] = value.shape
+                if value.flags.writeable:                # frozen here, and not in the caller's hands
+                    value = value.view()
+                    value.flags.writeable = False
+                    object.__setattr__(self, name, value)
         object.__setattr__(self, "_shape", together(**shapes))       # raises where array lengths disagree
 
     def numbers(self, prefix=""):
         """Names and values of every numeric field, those of nested records with a prefix."""
-        return self._numbers(prefix, getattr)
-
-    def _numbers(self, prefix="", read=lambda record, name: vars(record)[name]):
         found = {}
         for name in _names(type(self)):
-            value = read(self, name)
+            value = getattr(self, name)
             if isinstance(value, Record):
-                found |= value._numbers(prefix + name + ".", read)
+                found |= value.numbers(prefix + name + ".") if name not in self.apart else {}
             elif isinstance(value, (float, int, np.ndarray, np.generic)):
                 found[prefix + name] = value
         return found
@@ -185,6 +210,24 @@ class Record:
         if not self.shape:
             raise TypeError(f"this {type(self).__name__} is a single one and has no length")
         return self.shape[0]
+
+    def __bool__(self):
+        return True
+
+    def _key(self):
+        """What equality and hash compare."""
+        def plain(value):
+            if isinstance(value, np.ndarray):            # + 0.0: minus zero equals zero
+                return value.shape, (value + 0.0).tobytes() if value.dtype.kind == "f" else value.tobytes()
+            return "nan" if isinstance(value, float) and value != value else value
+
+        return tuple(plain(getattr(self, f.name)) for f in dataclasses.fields(self) if f.compare)
+
+    def __eq__(self, other):
+        return self._key() == other._key() if type(self) is type(other) else NotImplemented
+
+    def __hash__(self):
+        return hash((type(self), self._key()))
 
     def __getitem__(self, index):
         """The lanes that `index` picks, as a record of the same kind."""
@@ -201,7 +244,7 @@ class Record:
             return value
 
         def pick_record(record):
-            changed = {name: pick(getattr(record, name)) for name in _names(type(record))}
+            changed = {name: pick(getattr(record, name)) for name in _names(type(record)) if name not in record.apart}
             return dataclasses.replace(record, **changed)
 
         return pick_record(self)
@@ -209,10 +252,54 @@ class Record:
     def __iter__(self):
         return (self[i] for i in range(len(self)))
 
+    def replace(self, **changes):
+        """A copy with fields changed."""
+        for name in changes:
+            if name not in _names(type(self)):
+                raise unknown(f"{type(self).__name__} has no field", name, _names(type(self)))
+        return dataclasses.replace(self, **changes)
+
+    @classmethod
+    def stack(cls, records):
+        """Many records as one: their numbers along a new first axis. What is no number must be the same in all."""
+        records = list(records)
+        if not records:
+            raise ValueError(f"records must hold at least one {cls.__name__}; got none")
+        require(**{f"records[{i}]": (record, cls) for i, record in enumerate(records)})
+        shape = together(**{f"records[{i}]": record.shape for i, record in enumerate(records)})
+        fields = {}
+        for f in dataclasses.fields(cls):
+            values = [getattr(record, f.name) for record in records]
+            if isinstance(values[0], Record) and f.name not in cls.apart:
+                fields[f.name] = type(values[0]).stack(values)
+            elif all(isinstance(v, (float, int, np.ndarray)) for v in values) and not f.metadata.get("scalar"):
+                fields[f.name] = np.stack([np.broadcast_to(v, shape) for v in values])
+            elif f.compare and all(v == values[0] for v in values):
+                fields[f.name] = values[0]
+            elif f.name == "name":
+                fields[f.name] = ", ".join(dict.fromkeys(values))
+            elif f.compare:
+                raise ValueError(f"{f.name} must be the same in all records; got {values[0]!r} and others")
+        return cls(**fields)
+
     def to_frame(self):
         """A pandas DataFrame: one row a lane (C order), one column a numeric field."""
         import pandas as pd
-        shape = self.shape
-        columns = {name.replace(".", "_"): np.broadcast_to(value, shape).ravel() for name, value in
-                   self.numbers().items()}
-        return pd.DataFrame(columns)
+        return pd.DataFrame({name.replace(".", "_"): np.broadcast_to(value, self.shape).ravel()
+                             for name, value in self.numbers().items()})
+
+    def _summary(self):
+        """Values of a single record, those of its parts left out; lowest, median and highest of a population."""
+        import pandas as pd
+        defaults = {f.name: f.default for f in dataclasses.fields(self)}
+        every = {name: value for name, value in self.numbers().items() if "." not in name}
+        values = {n: v for n, v in every.items() if np.ndim(v) or v != defaults[n]} or every
+        heading = " ".join(filter(None, [type(self).__name__, getattr(self, "name", "")]))
+        if len(values) < len(every):
+            heading += " (fields at their defaults left out)"
+        if not self.shape:
+            return heading, pd.DataFrame({"value": pd.Series(values, dtype=object)})
+        middle = {name: np.nanquantile(np.asarray(value, float), [0, 0.5, 1], method="closest_observation")
+                  if np.size(value) else [np.nan] * 3 for name, value in values.items()}
+        return (f"{heading}: {math.prod(self.shape)} lanes",
+                pd.DataFrame.from_dict(middle, orient="index", columns=["lowest", "median", "highest"]))

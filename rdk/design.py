@@ -1,10 +1,8 @@
 """What an evaluation takes: a design, a mission scenario, and the coefficients of the models.
 
-All three are frozen dataclasses of numbers. A population is the same dataclass holding arrays; use
-`dataclasses.replace` to change a field.
+All three are frozen dataclasses of numbers. A population is the same dataclass holding arrays;
+`design.replace(wheel_radius_m=0.12)` is a changed copy.
 """
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import dataclass, field
@@ -69,6 +67,8 @@ class Design(Record):
     ValueError
         If a value is outside these limits or not finite, or if array lengths disagree.
     """
+    example = "rdk.rover('Rashid-1')"
+
     wheel_radius_m: float = number(above=0)
     wheel_width_m: float = number(above=0)
     grouser_height_m: float = number(0)
@@ -107,6 +107,9 @@ class Problem:
     constraints: tuple = (("range_km", ">=", 0.1),)
     traverse_limit_km: float | None = None
     seed: int | None = None
+
+    def __hash__(self):
+        return hash((*self.objectives.items(), *map(tuple, self.constraints), self.traverse_limit_km, self.seed))
 
 
 @dataclass(frozen=True)
@@ -153,6 +156,8 @@ class Scenario(Record):
     ValueError
         If a value is outside these limits, or if array lengths disagree.
     """
+    example = "rdk.scenario('polar_prospecting')"
+
     name: str
     latitude_deg: float = number(-90, 90)
     soil: Soil
@@ -196,6 +201,8 @@ class Model(Record):
     `evaluate(design, scenario, model=Model(drivetrain_efficiency=0.7))`. `kernel` is "paper" or "imposed-arc";
     a transition coefficient of None is the kernel's own.
     """
+    example = "rdk.Model()"
+
     # terramechanics
     kernel: str = "paper"
     transition_c1: float | None = number(above=0, maximum=1, default=None, optional=True)

@@ -15,7 +15,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from . import power, sky, terramechanics, thermal
-from ._fields import Later, Record, together
+from ._fields import Later, Record, require, together
 from .design import Design, Model, Scenario, warn_outside
 from .mass import MassBreakdown, mass_breakdown
 
@@ -41,7 +41,7 @@ _WAITING = (("model", "kernel", "paper"),
 
 
 @dataclass(frozen=True)
-class TraverseLog:
+class TraverseLog(Record):
     """The march of one design through its mission: one row a time step, powers as averages over the step.
 
     `discarded_w` is sunlight that a full pack could not take, `unserved_w` demand that an empty one could not meet,
@@ -61,11 +61,6 @@ class TraverseLog:
     unserved_w: np.ndarray
     battery_loss_w: np.ndarray
     distance_km: np.ndarray
-
-    def to_frame(self):
-        """The log as a pandas DataFrame."""
-        import pandas as pd
-        return pd.DataFrame(vars(self))
 
 
 @dataclass(frozen=True)
@@ -129,6 +124,9 @@ class Performance(Record):
     log : TraverseLog or None
         Hour by hour, for one design only.
     """
+    example = "rdk.evaluate(design, scenario)"
+    apart = ("log",)                                     # its arrays run over time
+
     range_km: float
     total_mass_kg: float
     slope_capability_deg: float
@@ -158,10 +156,10 @@ class Performance(Record):
     structure_share: float
     wheel_gap_m: float
     mass: MassBreakdown
-    log: TraverseLog | None = field(default=None, repr=False, compare=False)
+    log: TraverseLog | None = field(default=None, compare=False)
 
 
-def evaluate(design, scenario, model=Model()):
+def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> Performance:
     """Performance of a design, or of a population, on a mission.
 
     Parameters
@@ -198,9 +196,7 @@ def evaluate(design, scenario, model=Model()):
     >>> f"{result.total_mass_kg:.1f} kg, {result.slope_capability_deg:.0f} deg"
     '16.4 kg, 23 deg'
     """
-    for name, value, kind in ("design", design, Design), ("scenario", scenario, Scenario), ("model", model, Model):
-        if not isinstance(value, kind):
-            raise TypeError(f"{name} must be a {kind.__name__}; got {type(value).__name__}")
+    require(design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     for kind, name, paper in _WAITING:
         if np.any(getattr({"scenario": scenario, "model": model}[kind], name) != paper):
             raise NotImplementedError(f"{name} of the {kind} is not built yet")

@@ -506,10 +506,10 @@ def test_range_envelopes_of_the_flown_rovers(target, name):
 # ---- refusals and warnings ---------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("arguments, message", [
-    ((vars(RASHID), MARE), "design must be a Design; got dict"),
-    ((RASHID, "mare"), "scenario must be a Scenario; got str"),
-    ((RASHID, MARE, {"shear_scale": 1}), "model must be a Model; got dict"),
-    ((MARE, RASHID), "design must be a Design; got Scenario")])
+    ((vars(RASHID), MARE), r"design must be a Design, such as rdk.rover\('Rashid-1'\); got dict"),
+    ((RASHID, "mare"), r"scenario must be a Scenario, such as rdk.scenario\('polar_prospecting'\); got 'mare'"),
+    ((RASHID, MARE, {"shear_scale": 1}), r"model must be a Model, such as rdk.Model\(\); got dict"),
+    ((MARE, RASHID), "design must be a Design.*; got Scenario")])
 def test_wrong_kinds_are_named(arguments, message):
     with pytest.raises(TypeError, match=message):
         rdk.evaluate(*arguments)
