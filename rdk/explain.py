@@ -87,8 +87,8 @@ def _gains(design, scenario, performance, model):
                         for name in LEVERS.values()])
     lanes = {name: np.where(np.arange(len(LEVERS)) == i, factors[i], 1) * now[name]
              for i, name in enumerate(LEVERS.values())}
-    found = evaluate(*replaced(design, dataclasses.replace(scenario, traverse_limit_km=np.inf), model, lanes)).range_km
-    ratio = np.maximum(found, 1e-9) / max(performance.range_km, 1e-9)
+    *changed, model = replaced(design, dataclasses.replace(scenario, traverse_limit_km=np.inf), model, lanes)
+    ratio = np.maximum(evaluate(*changed, model=model).range_km, 1e-9) / max(performance.range_km, 1e-9)
     return dict(zip(LEVERS, np.minimum(100 * (np.where(factors > 1, ratio, 1 / ratio) - 1), 999.0).tolist()))
 
 

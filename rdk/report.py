@@ -154,9 +154,9 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
     if not isinstance(title, str) or not title.strip():
         raise ValueError(f"title must be a text; got {title!r}")
     demands = requirements(design, scenario, draws, model=model)
-    result = evaluate(design, scenario, model)
+    result = evaluate(design, scenario, model=model)
     names, fleet = pictures.published()
-    rovers = evaluate(fleet, scenario, model)
+    rovers = evaluate(fleet, scenario, model=model)
     if baseline is None:
         nearest = int(np.abs(np.log(rovers.total_mass_kg / result.total_mass_kg)).argmin())
         baseline, baseline_name = fleet[nearest], names[nearest]

@@ -194,7 +194,7 @@ def swapped(front, **changes):
         warnings.simplefilter("ignore", UserWarning)     # the ballast may be a chassis outside the class
         changed = dataclasses.replace(front.designs, **changes)
         new = evaluate(ballasted(changed, front.scenario, old.total_mass_kg, front.model), front.scenario,
-                       front.model)
+                       model=front.model)
     return pd.DataFrame(dict(
         total_mass_kg=old.total_mass_kg, **{f"old_{name}": getattr(front.designs, name) for name in changes},
         range_change_km=new.range_km - old.range_km, mass_change_kg=new.total_mass_kg - old.total_mass_kg,
@@ -309,14 +309,15 @@ def sobol(scenario, metrics=("range_km", "total_mass_kg", "slope_capability_deg"
     mixed = [np.where(np.arange(len(names)) == i, B, A) for i in range(len(names))]
     cube = np.concatenate([A, B, *mixed])
     if design is None:
-        result = evaluate(decode(cube, bounds), scenario, model)
+        result = evaluate(decode(cube, bounds), scenario, model=model)
     else:
         changes = {}
         for row, u in zip(table, cube.T):
             low, high = float(row["low"]), float(row["high"])
             share = u if row["distribution"] == "uniform" else 0.5 + ndtri(u) / ndtri(0.95) / 2
             changes[row["name"]] = perturbed(row, scenario, model, low + (high - low) * share)
-        result = evaluate(*replaced(design, scenario, model, changes))
+        *changed, model = replaced(design, scenario, model, changes)
+        result = evaluate(*changed, model=model)
     values = np.stack([np.asarray(getattr(result, name), float) for name in metrics])
     f_A, f_B, *f_AB = np.split(values, len(names) + 2, axis=1)
     f_AB = np.stack(f_AB)                                # (inputs, metrics, count)

@@ -212,7 +212,8 @@ def sweep(design: Design, scenario: Scenario, over: dict, *, model: Model = Mode
         if v.ndim != 1 or not v.size:
             raise ValueError(f"over: {name} needs a one-dimensional list of values; got shape {v.shape}")
     axes = (values[0],) if len(values) == 1 else (values[0][:, None], values[1][None, :])
-    return Sweep(tuple(over), values, evaluate(*replaced(design, scenario, model, dict(zip(over, axes)))))
+    *swept, model = replaced(design, scenario, model, dict(zip(over, axes)))
+    return Sweep(tuple(over), values, evaluate(*swept, model=model))
 
 
 # ---- uncertainty ----------------------------------------------------------------------------------------------
@@ -342,8 +343,8 @@ def intervals(design, scenario, draws=500, seed=0, level=0.9, model=Model(), tab
     if not changes:
         raise ValueError("table must hold at least one row; got none")
     across = {name: value.reshape(-1, *(1 for _ in design.shape)) for name, value in changes.items()}
-    cloud = evaluate(*replaced(design, scenario, model, across))
-    nominal = evaluate(design, scenario, model)
+    *drawn_records, drawn_model = replaced(design, scenario, model, across)
+    cloud, nominal = evaluate(*drawn_records, model=drawn_model), evaluate(design, scenario, model=model)
     tail = (1 - level) / 2
     low, median, high = {}, {}, {}
     for name in METRICS:
@@ -426,7 +427,7 @@ def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: 
     takes = np.zeros((2**count, len(differ)), bool)                  # (mixtures, variables): from the design?
     takes[:, differ] = np.arange(2**count)[:, None] >> np.arange(count) & 1
     result = evaluate(Design(**{name: np.where(takes[:, i], getattr(design, name), getattr(baseline, name))
-                                for i, name in enumerate(DESIGN_SPACE)}), scenario, model)
+                                for i, name in enumerate(DESIGN_SPACE)}), scenario, model=model)
     size = takes.sum(1)
     share = np.array([math.factorial(k) * math.factorial(count - 1 - k) / math.factorial(count) for k in range(count)])
     # phi_i = sum over mixtures without i of share(size) * (with i - without i), as one matrix

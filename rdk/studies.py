@@ -77,7 +77,7 @@ class Case:
         except (ValueError, KeyError, TypeError) as error:
             warnings.warn(f"{path.name} in {folder} is damaged and computed anew: {error}", UserWarning, stacklevel=4)
             return None
-        return Front(designs, evaluate(designs, scenario, model), scenario, model, problem, history, message)
+        return Front(designs, evaluate(designs, scenario, model=model), scenario, model, problem, history, message)
 
 
 def fronts(scenarios: Iterable[Scenario], *, seeds: Iterable[int] | None = None, shear_scales: Iterable[float] = (1.0,),

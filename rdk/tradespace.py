@@ -235,10 +235,11 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
             F = np.array([i.F for i in best]).reshape(-1, len(problem.objectives))
             genes = np.array([best[i].X for i in np.sort(np.unique(F, axis=0, return_index=True)[1])])
         designs = decode(genes.reshape(-1, len(DESIGN_SPACE)), bounds)
-        performance = evaluate(designs, scenario, model)
+        performance = evaluate(designs, scenario, model=model)
         designs = designs[np.lexsort((performance.range_km, performance.total_mass_kg))]
         # evaluated in their final order: the last bits can depend on a lane's place in the batch
-        return Front(designs, evaluate(designs, scenario, model), scenario, model, problem, tuple(history), message)
+        performance = evaluate(designs, scenario, model=model)
+        return Front(designs, performance, scenario, model, problem, tuple(history), message)
 
     def converged():
         if len(history) <= PATIENCE:
@@ -350,7 +351,7 @@ def nsga2(scenario: Scenario, problem: Problem, population: int = 50, generation
                              n_ieq_constr=len(problem.constraints) + 1)
 
         def _evaluate(self, x, out, *args, **kwargs):
-            result = evaluate(decode(x, bounds), scenario, model)
+            result = evaluate(decode(x, bounds), scenario, model=model)
             # designs that differ in a variable which no objective feels tie in theory; the last bits, which differ
             # from one processor to the next, must not rank them
             F = np.round(minimised(result, problem.objectives), RANKED_DECIMALS)

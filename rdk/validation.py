@@ -263,7 +263,7 @@ def load_transfer(design, scenario, height_to_wheelbase=0.4, slope_deg=25.0, sli
     six = np.equal(design.wheel_count, 6)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)     # designs outside the class are the caller's choice
-        mass = evaluate(design, scenario, model).total_mass_kg
+        mass = evaluate(design, scenario, model=model).total_mass_kg
     load = mass * model.gravity_m_s2 * np.cos(slope) / design.wheel_count
     shift = np.where(six, 3.0, 2.0) * ratio * np.tan(slope)
     factors = [np.ones_like(shift), 1 + shift, np.where(shift < 1, 1 - shift, 1.0)]
@@ -434,7 +434,7 @@ def flown_rovers():
         limits = dataclasses.replace(mission, traverse_limit_km=[mission.traverse_limit_km, np.inf])
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)             # Yutu-2 is outside the class, and meant to be
-            result = evaluate(catalog.rover(row.rover), limits, model)
+            result = evaluate(catalog.rover(row.rover), limits, model=model)
         site = row.panel_area_m2, row.landing_latitude_deg
         peak, clean = peak_solar_power_w(*site, clean_array=False), peak_solar_power_w(*site)
         low, high = (peak_solar_power_w(*site, constant("flown_cell_efficiency_" + end)) for end in ("low", "high"))

@@ -49,7 +49,7 @@ def assert_current(explorer):
     """What is shown is what `evaluate` says about the design and the mission that the inputs show."""
     explorer.settle()
     assert not explorer.error
-    wanted = rdk.evaluate(explorer.design, explorer.scenario, explorer.model)
+    wanted = rdk.evaluate(explorer.design, explorer.scenario, model=explorer.model)
     for name, value in wanted.numbers().items():
         np.testing.assert_array_equal(explorer.result.numbers()[name], value, err_msg=name)
     words = html.unescape(explorer.controls.readout.value)
@@ -274,7 +274,8 @@ def test_the_binding_lever_is_the_one_that_gains_most():
             factor = scale.get(value, 1.1)
             ratio = rdk.evaluate(dataclasses.replace(design, **{name: value * factor}), polar).range_km / base.range_km
             gains.append(100 * (ratio if factor > 1 else 1 / ratio) - 100)
-        fast = rdk.evaluate(design, dataclasses.replace(polar, traverse_limit_km=99), rdk.Model(hub_no_load_speed_rad_s=5.5))
+        fast = rdk.evaluate(design, dataclasses.replace(polar, traverse_limit_km=99),
+                            model=rdk.Model(hub_no_load_speed_rad_s=5.5))
         gains.insert(0, 100 * fast.range_km / base.range_km - 100)
         assert found.detail.startswith("10 % more hub speed gives {:.1f} % more range, array {:.1f} %, battery {:.1f} %"
                                        .format(*gains))
@@ -722,7 +723,7 @@ def test_the_python_reproduces_what_is_shown(model, script):
     code, space = explorer.controls.code.value, {}
     assert code == explorer.python() and max(map(len, code.splitlines())) < 1200
     exec(code, space)
-    result = rdk.evaluate(explorer.design, explorer.scenario, model)
+    result = rdk.evaluate(explorer.design, explorer.scenario, model=model)
     if script == "the read-outs":
         assert space["result"].numbers() == result.numbers() == explorer.result.numbers()
         for name in "range_km", "slip":

@@ -177,7 +177,7 @@ def test_designs_scenarios_soils_and_models_broadcast_together():
                        duty_cycle=np.array([[0.3], [0.05]]))
     model = rdk.Model(shear_scale=np.array([1.0, 1.2])[:, None, None],
                       dust_factor=np.array([0.9, 0.6])[:, None, None])
-    found = rdk.evaluate(design, scenario, model)
+    found = rdk.evaluate(design, scenario, model=model)
     assert found.shape == (2, 2, 3)
     for k in range(2):
         for j in range(2):
@@ -187,7 +187,7 @@ def test_designs_scenarios_soils_and_models_broadcast_together():
                     replace(MARE, latitude_deg=[10.0, -60.0][j], duty_cycle=[0.3, 0.05][j],
                             soil=replace(loose, friction_angle_deg=[30.0, 46.0][j],
                                          cohesion_kpa=[0.1, 0.2][j])),
-                    rdk.Model(shear_scale=[1.0, 1.2][k], dust_factor=[0.9, 0.6][k]))
+                    model=rdk.Model(shear_scale=[1.0, 1.2][k], dust_factor=[0.9, 0.6][k]))
                 assert_same(found, (k, j, i), single)
 
 
@@ -211,18 +211,18 @@ def test_any_model_coefficient_may_be_an_array_and_matters(name):
         scenario = replace(scenario, traverse_limit_km=1.0)
     default = {"transition_c1": 0.4, "transition_c2": 0.2}.get(name, getattr(rdk.Model(), name))
     values = np.array([default, MODEL_VALUES.get(name, 1.1 * default)])
-    found = rdk.evaluate(design, scenario, rdk.Model(**{name: values[:, None]}))
+    found = rdk.evaluate(design, scenario, model=rdk.Model(**{name: values[:, None]}))
     if name == "operating_temperature_min_c":            # the flag needs a warm noon too
         found = rdk.evaluate(replace(design, avionics_power_w=5.0), replace(scenario, payload_power_w=0.0),
-                             rdk.Model(**{name: values[:, None]}))
+                             model=rdk.Model(**{name: values[:, None]}))
     elif name == "operating_temperature_max_c":
         found = rdk.evaluate(design, scenario,
-                             rdk.Model(**{name: values[:, None]}, operating_temperature_min_c=-200))
+                             model=rdk.Model(**{name: values[:, None]}, operating_temperature_min_c=-200))
     else:
         for i, value in enumerate(values):
             for j in range(2):
                 assert_same(found, (i, j),
-                            rdk.evaluate(design[j], scenario, rdk.Model(**{name: float(value)})))
+                            rdk.evaluate(design[j], scenario, model=rdk.Model(**{name: float(value)})))
     assert any(not np.array_equal(getattr(found, field)[0], getattr(found, field)[1]) for field in FIELDS)
 
 
@@ -321,7 +321,7 @@ def test_extreme_missions_give_numbers(change, model):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for scenario in MARE, HIGHLAND:
-            found = rdk.evaluate(population, replace(scenario, **change), model)
+            found = rdk.evaluate(population, replace(scenario, **change), model=model)
             limit = change.get("traverse_limit_km", scenario.traverse_limit_km)
             assert np.all((found.range_km >= 0) & (found.range_km <= limit))  # without a cap, infinite
             for field in "total_mass_kg", "slope_capability_deg", "final_soc", "energy_balance_pct":
@@ -337,7 +337,7 @@ def test_extreme_missions_give_numbers(change, model):
 @example(replace(RASHID, battery_capacity_wh=5.0), replace(MARE, duration_earth_days=29.7), 1.0)
 def test_energy_is_conserved_step_by_step(design, scenario, step):
     model = rdk.Model(time_step_h=step)
-    result = rdk.evaluate(design, scenario, model)
+    result = rdk.evaluate(design, scenario, model=model)
     log = result.log
     change = np.diff(log.stored_wh, prepend=design.battery_capacity_wh) / log.step_h
     source = log.solar_w + log.unserved_w
@@ -400,16 +400,16 @@ def test_throttling_by_hand():
 
 def test_a_pack_that_starts_empty_is_throttled_from_the_first_step():
     for start in 0.0, 0.1, 0.15:                         # below the floor is on the floor
-        log = rdk.evaluate(RASHID, MARE, rdk.Model(soc_initial=start)).log
+        log = rdk.evaluate(RASHID, MARE, model=rdk.Model(soc_initial=start)).log
         assert log.throttled[0] and log.mobility_w[0] == log.distance_km[0] == 0 and log.soc[0] == 0.15
-    assert not rdk.evaluate(RASHID, MARE, rdk.Model(soc_initial=0.2)).log.throttled[0]
+    assert not rdk.evaluate(RASHID, MARE, model=rdk.Model(soc_initial=0.2)).log.throttled[0]
 
 
 def test_energy_balance_by_hand():
     """Trapezoidal over the samples with nothing recorded at the start; the last step may be shorter."""
     short = replace(POLAR, duration_earth_days=3.02)
     for scenario, model in (MARE, rdk.Model()), (short, rdk.Model(time_step_h=5)):
-        result = rdk.evaluate(RASHID, scenario, model)
+        result = rdk.evaluate(RASHID, scenario, model=model)
         time, log = np.append(0.0, result.log.time_h), result.log
         generated = np.trapezoid(np.append(0.0, log.solar_w), time)
         consumed = np.trapezoid(np.append(0.0, log.load_w), time)
@@ -420,12 +420,12 @@ def test_energy_balance_by_hand():
 def test_a_shorter_step_converges():
     scenario = replace(MARE, duration_earth_days=20.0, traverse_limit_km=math.inf)      # into the night
     design = replace(RASHID, battery_capacity_wh=200.0)
-    soc = [rdk.evaluate(design, scenario, rdk.Model(time_step_h=step)).log for step in (1.0, 0.25, 0.0625)]
+    soc = [rdk.evaluate(design, scenario, model=rdk.Model(time_step_h=step)).log for step in (1.0, 0.25, 0.0625)]
     at = [np.interp(340.0, log.time_h, log.soc) for log in soc]             # dusk: the pack is half empty
     assert 0.2 < at[2] < 0.98 and abs(at[1] - at[2]) < abs(at[0] - at[2]) < 0.05
-    odd = rdk.evaluate(design, scenario, rdk.Model(time_step_h=0.7)).log
+    odd = rdk.evaluate(design, scenario, model=rdk.Model(time_step_h=0.7)).log
     assert odd.time_h[-1] == 480 and 0 < odd.step_h[-1] <= 0.7 and np.all(np.diff(odd.time_h) > 0)
-    assert rdk.evaluate(design, scenario, rdk.Model(time_step_h=1e4)).log.time_h.tolist() == [480]
+    assert rdk.evaluate(design, scenario, model=rdk.Model(time_step_h=1e4)).log.time_h.tolist() == [480]
     short = rdk.evaluate(design, replace(scenario, duration_earth_days=0.01)).log
     np.testing.assert_allclose(short.time_h, [0.24], rtol=1e-15)
 
@@ -482,7 +482,7 @@ def test_cruise_speed_takes_arrays():
 
 def test_the_hub_cap_is_reported():
     capped = rdk.evaluate(RASHID, MARE)
-    free = rdk.evaluate(RASHID, MARE, rdk.Model(hub_no_load_speed_rad_s=math.inf))
+    free = rdk.evaluate(RASHID, MARE, model=rdk.Model(hub_no_load_speed_rad_s=math.inf))
     assert capped.hub_speed_limited and not free.hub_speed_limited
     assert capped.energy_balance_speed_m_s == free.cruise_speed_m_s > capped.cruise_speed_m_s
     assert capped.cruise_speed_m_s == pytest.approx(5 * 0.1 * (1 - capped.slip), rel=1e-14)
@@ -508,11 +508,11 @@ def test_range_envelopes_of_the_flown_rovers(target, name):
 @pytest.mark.parametrize("arguments, message", [
     ((vars(RASHID), MARE), r"design must be a Design, such as rdk.rover\('Rashid-1'\); got dict"),
     ((RASHID, "mare"), r"scenario must be a Scenario, such as rdk.scenario\('polar_prospecting'\); got 'mare'"),
-    ((RASHID, MARE, {"shear_scale": 1}), r"model must be a Model, such as rdk.Model\(\); got dict"),
+    ((RASHID, MARE, rdk.Model()), "2 positional arguments but 3"), (dict(model={"shear_scale": 1}), r"model must be a Model, such as rdk.Model\(\); got dict"),
     ((MARE, RASHID), "design must be a Design.*; got Scenario")])
 def test_wrong_kinds_are_named(arguments, message):
     with pytest.raises(TypeError, match=message):
-        rdk.evaluate(*arguments)
+        rdk.evaluate(*arguments) if isinstance(arguments, tuple) else rdk.evaluate(RASHID, MARE, **arguments)
 
 
 def test_shapes_that_do_not_broadcast_are_named():
@@ -520,7 +520,7 @@ def test_shapes_that_do_not_broadcast_are_named():
                        match=r"array lengths must agree or broadcast; .*design \(3,\), scenario \(2,\)"):
         rdk.evaluate(rdk.random_designs(3, seed=1), replace(MARE, slope_deg=np.array([1.0, 2.0])))
     with pytest.raises(ValueError, match=r"model \(4,\)"):
-        rdk.evaluate(rdk.random_designs(3, seed=1), MARE, rdk.Model(shear_scale=np.ones(4)))
+        rdk.evaluate(rdk.random_designs(3, seed=1), MARE, model=rdk.Model(shear_scale=np.ones(4)))
 
 
 def test_one_warning_names_what_is_outside_the_design_space():

@@ -52,8 +52,8 @@ def test_a_change_in_one_part_reaches_just_the_parts_downstream(part):
     # a long polar drive, limited by the sun and not by the hub or the mission, in which every part matters
     mission, model = replace(POLAR, traverse_limit_km=np.inf), rdk.Model(hub_no_load_speed_rad_s=np.inf)
     name = ONE_COEFFICIENT[part]
-    before = rdk.evaluate(RASHID, mission, model)
-    after = rdk.evaluate(RASHID, mission, replace(model, **{name: 0.9 * getattr(model, name)}))
+    before = rdk.evaluate(RASHID, mission, model=model)
+    after = rdk.evaluate(RASHID, mission, model=replace(model, **{name: 0.9 * getattr(model, name)}))
     changed = {where for where, results in plots.EVALUATION_RESULTS.items()
                if any(getattr(before, result) != getattr(after, result) for result in results)}
     assert changed == downstream(part)
@@ -61,7 +61,7 @@ def test_a_change_in_one_part_reaches_just_the_parts_downstream(part):
 
 def test_the_march_sees_the_sun_even_where_the_hub_sets_the_speed():
     before = rdk.evaluate(RASHID, POLAR)
-    after = rdk.evaluate(RASHID, POLAR, rdk.Model(panel_efficiency=0.25))
+    after = rdk.evaluate(RASHID, POLAR, model=rdk.Model(panel_efficiency=0.25))
     assert before.hub_speed_limited and before.cruise_speed_m_s == after.cruise_speed_m_s
     assert before.range_km > after.range_km and before.energy_balance_pct > after.energy_balance_pct
     assert ("power", "march") in {(start, end) for start, end, _ in plots.EVALUATION_FLOW}

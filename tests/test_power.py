@@ -57,7 +57,7 @@ def test_evaluate_sees_the_same_noon():
     scenario = dataclasses.replace(rdk.scenario("chandrayaan3_pragyan"), panel_tilt_deg=0.0,
                                    duration_earth_days=29.0)
     log = rdk.evaluate(design, scenario,
-                       rdk.Model(panel_efficiency=0.3, dust_factor=0.9 * 0.92 * 0.9 * 0.98)).log
+                       model=rdk.Model(panel_efficiency=0.3, dust_factor=0.9 * 0.92 * 0.9 * 0.98)).log
     # the hourly samples miss noon by up to half an hour: 0.25 deg of hour angle, 1e-5 of the power
     assert log.solar_w.max() == pytest.approx(noon_power("Pragyan", clean=0.98), rel=1e-5)
 

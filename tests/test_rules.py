@@ -133,8 +133,8 @@ def test_a_front_does_not_hang_on_the_last_bits(monkeypatch, name):
     """Processors round differently, which must not decide between designs that differ only in the wheelbase."""
     random, evaluate = np.random.default_rng(1), tradespace.evaluate
 
-    def on_another_machine(*arguments):
-        result = evaluate(*arguments)
+    def on_another_machine(*arguments, **options):
+        result = evaluate(*arguments, **options)
         blur = {field: np.asarray(getattr(result, field)) * (1 + 1e-15 * random.standard_normal(result.shape))
                 for field in ("range_km", "total_mass_kg", "slope_capability_deg")}
         return dataclasses.replace(result, **blur)

@@ -28,7 +28,7 @@ def flown(name):
     scenario = dataclasses.replace(rdk.scenario(row["mission"]), panel_tilt_deg=0.0)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)     # Yutu-2 is outside the design space, and known to be
-        return rdk.evaluate(rdk.rover(name), scenario, model), row
+        return rdk.evaluate(rdk.rover(name), scenario, model=model), row
 
 
 @pytest.mark.parametrize("target, name", [("night_pragyan", "Pragyan"), ("night_yutu2", "Yutu-2")])
@@ -90,7 +90,7 @@ def test_evaluate_agrees_with_the_transcription():
     for name in rdk.scenario_names("canonical"):
         scenario = rdk.scenario(name)
         model = rdk.Model(radioisotope_heater_power_w=7.0)
-        found = rdk.evaluate(designs, scenario, model)
+        found = rdk.evaluate(designs, scenario, model=model)
         constants = scalar.MODEL | {"rhu_w": 7.0}
         expected = [scalar.enclosure_temperatures_c(d.numbers(), vars(scenario), constants) for d in designs]
         # the fourth root taken in two ways: rounding of 300 K

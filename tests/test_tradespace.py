@@ -35,8 +35,8 @@ def calls(monkeypatch):
     """Shapes of the populations that a search evaluates, and what came out."""
     seen = []
 
-    def evaluate(design, *rest):
-        seen.append((design, rdk.evaluate(design, *rest)))
+    def evaluate(design, *rest, **options):
+        seen.append((design, rdk.evaluate(design, *rest, **options)))
         return seen[-1][1]
 
     monkeypatch.setattr(ts, "evaluate", evaluate)
@@ -413,7 +413,7 @@ def test_bounds_hold_and_the_model_is_used():
     model = rdk.Model(growth_fraction=0.5)
     front = rdk.pareto_front(MARE, **few, model=model)
     np.testing.assert_array_equal(front.performance.total_mass_kg,
-                                  rdk.evaluate(front.designs, MARE, model).total_mass_kg)
+                                  rdk.evaluate(front.designs, MARE, model=model).total_mass_kg)
 
 
 # ---- lanes without a solution, and empty fronts ----------------------------------------------------------

@@ -205,7 +205,7 @@ def _morning_battery_wh(heavier=True):
     # a battery that weighs nothing shows what the growing mass does
     model = Model() if heavier else Model(battery_specific_energy_wh_kg=1e9)
     mission = mare(duration_earth_days=3.0)
-    result = evaluate(rashid(battery_capacity_wh=capacity_wh), mission, model)
+    result = evaluate(rashid(battery_capacity_wh=capacity_wh), mission, model=model)
     return first(capacity_wh, result.minimum_soc > model.soc_floor)
 
 

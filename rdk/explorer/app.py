@@ -264,7 +264,7 @@ class Explorer:
             view, design, scenario = self.inputs["view"].value, self.design, self.scenario
         see, text = self.controls, ""
         try:
-            result = evaluate(design, scenario, self.model)
+            result = evaluate(design, scenario, model=self.model)
             self.intervals = intervals(design, scenario, draws=DRAWS, model=self.model)
             self.result, self.binding = result, explain.binding(design, scenario, result, self.model)
             self._rows = self._tabulate(design, scenario)
@@ -317,7 +317,7 @@ class Explorer:
             alt = pictures.stress(figure, result, design, scenario, self.model)
         elif view == "rovers":
             names, designs = self._published
-            others = evaluate(designs, scenario, self.model)
+            others = evaluate(designs, scenario, model=self.model)
             alt = pictures.among_rovers(figure, result, (others.total_mass_kg, others.range_km, names), [
                 (self.intervals.low[n], self.intervals.high[n]) for n in ("total_mass_kg", "range_km")])
         elif view == "why":
@@ -363,9 +363,10 @@ class Explorer:
             return pictures.contour(figure, fields, metric, values, grid, here, places and (*places, names))
         draws = {n: v[:, None] for n, v in uncertain_inputs(scenario, 60, model=self.model).items()}
         knots = values[0][::2]                           # half the work, and the eye sees no difference
-        cloud = evaluate(*replaced(design, scenario, self.model, {**draws, fields[0]: knots}))
+        *changed, model = replaced(design, scenario, self.model, {**draws, fields[0]: knots})
+        cloud = evaluate(*changed, model=model)
         band = np.quantile(np.nan_to_num(getattr(cloud, metric)), [0.05, 0.95], axis=0)
-        others = places and (*places, getattr(evaluate(fleet, scenario, self.model), metric), names)
+        others = places and (*places, getattr(evaluate(fleet, scenario, model=self.model), metric), names)
         return pictures.curve(figure, fields[0], metric, values[0], grid, (knots, *band),
                               (*here, float(getattr(result, metric))), others)
 
@@ -498,7 +499,8 @@ class Explorer:
             note += f": {len(design)} designs, listed under the inputs 'search'; the first is shown"
             where = _plain(self.scenario if mission is None else mission)
             design = Design(**{n: np.clip(getattr(design, n), v.low, v.high) for n, v in DESIGN_SPACE.items()})
-            self._searched, self._recipe = Front(design, evaluate(design, where, self.model), where, self.model, Problem()), None
+            found = evaluate(design, where, model=self.model)
+            self._searched, self._recipe = Front(design, found, where, self.model, Problem()), None
             self._offer(self._searched)
             design = design[0]
         self._put(design, mission, note)
