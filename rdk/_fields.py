@@ -1,4 +1,4 @@
-"""Frozen records of numbers or arrays: checked when built, broadcast together, indexed by lane, shown as short tables."""
+"""Frozen records of numbers or arrays: checked when built, broadcast together, shown as short tables."""
 import dataclasses
 import difflib
 import functools

@@ -82,7 +82,7 @@ def mass_breakdown(*, wheel_radius_m, wheel_width_m, grouser_height_m, grouser_c
     """
     per_wheel = (wheel_areal_density_kg_m2 * 2 * np.pi * wheel_radius_m * wheel_width_m          # rim, hub, spokes
                  + grouser_count * wheel_width_m * grouser_height_m * grouser_thickness_m * grouser_density_kg_m3
-                 + wheel_web_factor * wheel_areal_density_kg_m2 * np.pi * wheel_radius_m ** 2)   # a disc; not the paper's
+                 + wheel_web_factor * wheel_areal_density_kg_m2 * np.pi * wheel_radius_m ** 2)   # not the paper's
     wheels = wheel_count * per_wheel                                                             # eq. mass-wheels
     # eq. mass-motors
     motors = wheel_count * (motor_base_mass_kg + motor_mass_per_torque_kg_nm * peak_wheel_torque_nm)

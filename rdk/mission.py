@@ -231,7 +231,7 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
                                                     model.rigid_obstacle_ratio)
         contact_m2 = design.wheel_width_m * np.sqrt(balance.sinkage_m * (2 * design.wheel_radius_m - balance.sinkage_m))
         pressure = weight * np.cos(np.radians(scenario.slope_deg)) / contact_m2 / 1000
-        wheel_length = (design.wheel_radius_m + design.grouser_height_m) * np.where(np.equal(design.wheel_count, 6), 4, 2)
+        along = np.where(np.equal(design.wheel_count, 6), 4, 2) * (design.wheel_radius_m + design.grouser_height_m)
         feasible = (~np.asarray(stalled) & (traverse["energy_balance_pct"] >= 0) & (traverse["range_km"] > 0)
                     & (obstacle >= scenario.required_obstacle_height_m))
     fields = dict(
@@ -240,7 +240,7 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
         sinkage_m=balance.sinkage_m, wheel_torque_nm=balance.torque_nm, hot_temperature_c=hot, cold_temperature_c=cold,
         obstacle_capability_m=obstacle, ground_pressure_kpa=pressure, sliding=sliding, hot_survival=hot_survival,
         cold_survival=cold_survival, structure_share=mass.chassis_kg / mass.total_kg,
-        wheel_gap_m=design.wheelbase_m - wheel_length)
+        wheel_gap_m=design.wheelbase_m - along)
     return Performance(**{name: _shaped(value, shape) for name, value in fields.items()}, log=log,
                        arrival_h=partial(_arrival_h, march, shape),
                        mass=MassBreakdown(**{name: _shaped(value, shape) for name, value in mass.numbers().items()}))

@@ -228,7 +228,8 @@ def test_any_model_coefficient_may_be_an_array_and_matters(name):
 
 SCENARIO_VALUES = {"latitude_deg": (-85.0, 30.0), "slope_deg": (-10.0, 12.0), "duty_cycle": (0.0, 0.5),
                    "traverse_limit_km": (1.0, math.inf), "required_obstacle_height_m": (0.0, 0.2),
-                   "panel_tilt_deg": (0.0, 60.0), "panel_azimuth_deg": (0.0, 270.0), "maximum_speed_m_s": (0.01, math.inf)}
+                   "panel_tilt_deg": (0.0, 60.0), "panel_azimuth_deg": (0.0, 270.0),
+                   "maximum_speed_m_s": (0.01, math.inf)}
 
 
 @pytest.mark.parametrize("name", lists(rdk.Scenario, skip=["duration_earth_days", "longitude_deg"]))
@@ -508,7 +509,8 @@ def test_range_envelopes_of_the_flown_rovers(target, name):
 @pytest.mark.parametrize("arguments, message", [
     ((vars(RASHID), MARE), r"design must be a Design, such as rdk.rover\('Rashid-1'\); got dict"),
     ((RASHID, "mare"), r"scenario must be a Scenario, such as rdk.scenario\('polar_prospecting'\); got 'mare'"),
-    ((RASHID, MARE, rdk.Model()), "2 positional arguments but 3"), (dict(model={"shear_scale": 1}), r"model must be a Model, such as rdk.Model\(\); got dict"),
+    ((RASHID, MARE, rdk.Model()), "2 positional arguments but 3"),
+    (dict(model={"shear_scale": 1}), r"model must be a Model, such as rdk.Model\(\); got dict"),
     ((MARE, RASHID), "design must be a Design.*; got Scenario")])
 def test_wrong_kinds_are_named(arguments, message):
     with pytest.raises(TypeError, match=message):
