@@ -5,13 +5,14 @@ Usage, from anywhere: python notebooks/execute.py [01_wheel_on_soil.ipynb ...]  
 
 import base64
 import os
+import re
 import sys
 import time
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
 METADATA = {"kernelspec": {"name": "python3", "display_name": "Python 3 (ipykernel)", "language": "python"},
-            "language_info": {"name": "python"}}  # no patch version, no widget state
+            "language_info": {"name": "python", "file_extension": ".py"}}  # no patch version, no widget state
 
 
 def execute(path):
@@ -30,10 +31,25 @@ def execute(path):
     for cell in notebook.cells:
         for output in cell.get("outputs", []):
             output.get("data", {}).pop("application/vnd.jupyter.widget-view+json", None)  # a random model id
+    describe_pictures(notebook)
     notebook.metadata = METADATA
     nbformat.write(notebook, path)
     if path.name.startswith("00_"):
         (FOLDER / "overview.png").write_bytes(last_picture(notebook))
+
+
+def describe_pictures(notebook):
+    """Give each picture an alternative text: a live picture's own sentence, or the first one after "What to see"."""
+    for cell, following in zip(notebook.cells, notebook.cells[1:]):
+        for output in cell.get("outputs", []):
+            data = output.get("data", {})
+            if "image/png" in data:
+                words = data.get("text/plain", "")       # of a live picture: its sentence
+                if words.startswith(("<Figure", "<matplotlib")):
+                    text = re.sub(r"^\*What to see[^*]*\*\s*", "", following.source).partition("\n\n")[0]
+                    text = re.sub(r"\[([^\]]*)\]\([^)]*\)|[*`$\\]", r"\1", text)
+                    words = re.split(r"(?<=[a-z0-9)°%])\. ", text)[0].rstrip(".") + "."
+                output.metadata = {"image/png": {"alt": words[:1].upper() + words[1:]}}
 
 
 def last_picture(notebook):

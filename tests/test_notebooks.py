@@ -26,14 +26,13 @@ def lines(cell):
 
 
 def reading_minutes(notebook):
-    """A reader's time without solutions: 200 words, 60 lines a minute, 15 s an equation, 20 s a picture."""
-    text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+    """A reader's time without what is folded: 200 words, 60 lines a minute, 15 s an equation, 20 s a picture."""
+    cells = [cell for cell in notebook.cells if not {"solution", "check", "appendix"} & set(tags(cell))]
+    text = "\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
     equations = re.findall(r"\$\$.+?\$\$", text, re.S)
     words = len(re.sub(r"\$\$.+?\$\$|<[^>]+>|\]\([^)]*\)", " ", text, flags=re.S).split())
-    code = sum(len(lines(cell)) for cell in notebook.cells if cell.cell_type == "code"
-               and "solution" not in tags(cell))
-    pictures = sum("image/png" in out.get("data", {}) for cell in notebook.cells
-                   for out in cell.get("outputs", []))
+    code = sum(len(lines(cell)) for cell in cells if cell.cell_type == "code")
+    pictures = sum("image/png" in out.get("data", {}) for cell in cells for out in cell.get("outputs", []))
     return words / 200 + code / 60 + len(equations) / 4 + pictures / 3
 
 
@@ -116,6 +115,18 @@ def test_solutions_are_collapsed_and_check_themselves(code):
         if "solution" in tags(cell):
             assert cell.metadata.get("jupyter", {}).get("source_hidden") is True, cell.source
             assert re.search(r"\bassert", cell.source), "a solution shows that it is one: " + cell.source
+
+
+def test_checks_and_appendices_are_folded(notebook, code):
+    for cell in code:
+        if "check" in tags(cell):
+            assert cell.metadata.jupyter.source_hidden and re.search(r"\bassert|assert_allclose", cell.source)
+    appendix = [i for i, cell in enumerate(notebook.cells) if "appendix" in tags(cell)]
+    if appendix:                                         # one folded heading hides what follows it, to the next
+        first = notebook.cells[appendix[0]]
+        assert first.source.startswith("## ") and first.metadata["jp-MarkdownHeadingCollapsed"] is True
+        assert appendix == list(range(appendix[0], appendix[-1] + 1))
+        assert notebook.cells[appendix[-1] + 1].source.startswith("## ")
 
 
 def test_every_picture_is_followed_by_words(notebook):

@@ -98,7 +98,7 @@ def wheel_in_soil():
     _angle(left, (0, 0), 0.42, 270, 292, r"$θ_m$", 1.3)
     _angle(left, (0, 0), 0.74, 270, 318, "")
     left.text(0.49, -0.7, r"$θ_1$", fontsize=11, ha="center", va="center", zorder=6)
-    _arrow(left, (-0.45, -1), (-0.45, -bottom), r"$z_0$", (-0.62, -0.84), style="<|-|>", width=1.2)
+    _arrow(left, (-0.45, -1), (-0.45, -bottom), r"$z_0$", (-0.74, -0.88), style="<|-|>", width=1.2)
     left.plot([-0.55, 0], [-bottom, -bottom], color=GREY, lw=1, linestyle="--")
     left.plot([0, -0.78], [0, 0.62], color=GREY, lw=1)
     left.text(-0.32, 0.42, "$r$", fontsize=11)

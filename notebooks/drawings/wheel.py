@@ -45,15 +45,15 @@ def sunk_wheel(design, performance, slope_deg=0.0, figure=None):
     return figure
 
 
-def stress_on_rim(radius_m, cases, figure=None, highest_kpa=None):
+def stress_on_rim(radius_m, cases, figure=None, highest=None):
     """The stresses (label -> angles in rad, ContactStress) to scale on the rim of a wheel that drives to the right.
 
     Blue, outside: normal stress. Orange, hatched, inside: shear stress, with arrows the way it pulls the rim. Ticks
-    mark entry (1), transition (m) and exit (2). `highest_kpa` fixes the scale, for live pictures.
+    mark entry (1), transition (m) and exit (2). `highest` fixes the scale, for live pictures.
     """
     r = 1000 * radius_m
-    highest = highest_kpa or max(np.max(abs(np.array(stress[:2]))) for _, stress in cases.values()) / 1000
-    widest = max(angle[-1] for angle, _ in cases.values()) if highest_kpa is None else 0.5
+    highest = highest or max(np.max(abs(np.array(stress[:2]))) for _, stress in cases.values()) / 1000
+    widest = max(angle[-1] for angle, _ in cases.values()) if highest is None else 0.5
     scale = 0.8 * r * np.sin(widest) / highest                           # mm of drawing a kPa
     figure, all_axes = panels(1, len(cases), figure=figure, figsize=(3.2 * len(cases), 3.3), squeeze=False, sharey=True)
 

@@ -5,7 +5,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from scipy.integrate import trapezoid
 from scipy.optimize import least_squares
 
 from rdk import catalog, terramechanics, validation
@@ -125,18 +124,15 @@ def _best(ideal=False):
     return [slip[efficiency.argmax()], efficiency.max()]
 
 
-def _pull_error_ppm(points=100, n=1.1):
-    """Relative error of the trapezoidal rule's pull at an entry angle of 0.35 rad and slip 0.2, times 1e6."""
-    soil = replace(catalog.soil("apollo-nominal"), sinkage_exponent=n)
+_DEPTH_M, _PLATES_M = np.array([5, 10, 20, 40]) / 1000, np.array([0.03, 0.06])
+_READINGS_KPA = np.array([[8.21, 15.33, 28.60, 53.37], [7.08, 13.21, 24.64, 45.99]])
 
-    def pull(angle):
-        stress = terramechanics.contact_stress(_ribbed(), soil, 0.35, 0.2, angle)
-        return trapezoid(stress.shear_stress_pa * np.cos(angle) - stress.normal_stress_pa * np.sin(angle),
-                         angle)
 
-    middle = (0.4 + 0.2 * 0.2) * 0.35
-    exact = sum(pull(np.linspace(a, b, 200_001)) for a, b in ((0, middle), (middle, 0.35)))
-    return 1e6 * abs(pull(np.linspace(0, 0.35, points)) / exact - 1)
+def _plate_test(depth=_DEPTH_M, plates=_PLATES_M):
+    """n, k_c and k_phi (kN, m) of the plate test in 01.4."""
+    power = np.polyfit(np.log(depth), np.log(_READINGS_KPA).mean(axis=0), 1)[0]
+    stiffness = np.exp(np.log(_READINGS_KPA / depth**power).mean(axis=1))
+    return [power, *np.linalg.solve(np.c_[1 / plates, [1, 1]], stiffness)]
 
 
 @cache
@@ -147,8 +143,11 @@ def _radius_mm(height_m, count, soil):
     return 1000 * first(radius_m, slope >= 16)
 
 
+_WHEELS = ((0.015, 14, "sourcebook-trafficability"), (0.020, 24, "sourcebook-trafficability"),
+           (0.015, 14, "apollo-nominal"))                # height, count and soil in 01.5
+
 EXERCISES["01.1"] = Exercise(
-    "number", lambda: 2 ** (2 / 3), "Section 10 has the power law: how does the sinkage depend on the load?",
+    "number", lambda: 2 ** (2 / 3), "Section 7 has the power law: how does the sinkage depend on the load?",
     {"That would be proportion: twice the load, twice the rut. Sinkage is a weaker power of the load.":
         lambda: 2.0,
      "The exponent is upside down.": lambda: 2 ** (3 / 2),
@@ -170,24 +169,28 @@ EXERCISES["01.3"] = Exercise(
     "Is the grid fine enough?",
     {"That is where the pull is largest. A wheel that pulls hard there hardly moves.":
         lambda: [0.9, float(_efficiency(0.9))],
+     "First the slip, then the efficiency.": lambda: _best()[::-1],
+     "The efficiency as a share, not in percent.": lambda: [_best()[0], 100 * _best()[1]],
      "The speed is ω r (1 - s): you left the slip out of it.": lambda: _best(True)}, within=0.04)
 
 EXERCISES["01.4"] = Exercise(
-    "number", _pull_error_ppm,
-    "Take the pull with the trapezoid and 100 points, and with 200 Gauss points on each arc; n is 1.1 twice.",
-    {"That is the error with the exponent of the notebook's soil: set n to 1.1 for both rules.":
-        lambda: _pull_error_ppm(n=1.0),
-     "That is the trapezoid with 101 points, that is with 100 intervals; the paper's has 100 points.":
-        lambda: _pull_error_ppm(101)}, within=0.005)
+    "3 numbers", _plate_test,
+    "The slope of the logarithms is n; readings over depth to the power n are k_c / b + k_phi, one for each plate.",
+    {"The moduli with depths in metres, please: in millimetres they are other numbers.":
+        lambda: _plate_test(1000 * _DEPTH_M, 1000 * _PLATES_M),
+     "First k_c, then k_phi.": lambda: [_plate_test()[i] for i in (0, 2, 1)],
+     "That takes the plates the other way round: the narrow one met more pressure.":
+        lambda: _plate_test(plates=_PLATES_M[::-1]),
+     "The moduli in kN, please, not in N.": lambda: _plate_test() * np.array([1, 1000, 1000])}, within=0.03)
 
 EXERCISES["01.5"] = Exercise(
-    "3 numbers", lambda: [_radius_mm(0.015, 14, "sourcebook-trafficability"),
-                     _radius_mm(0.020, 24, "sourcebook-trafficability"),
-                     _radius_mm(0.015, 14, "apollo-nominal")],
+    "3 numbers", lambda: [_radius_mm(*wheel) for wheel in _WHEELS],
     "Evaluate the slope capability for an array of radii and take the first that reaches 16 deg.",
     {"The first two are with the friction angle of 46 deg; the question asks for the Sourcebook's there.":
         lambda: [_radius_mm(0.015, 14, "apollo-nominal"), _radius_mm(0.020, 24, "apollo-nominal"),
                  _radius_mm(0.015, 14, "apollo-nominal")],
+     "In mm, please, and the radius.": lambda: [_radius_mm(*wheel) / 1000 for wheel in _WHEELS],
+     "The radius, not the diameter.": lambda: [2 * _radius_mm(*wheel) for wheel in _WHEELS],
      "The other way round: first 14 grousers of 15 mm, then 24 of 20 mm.":
         lambda: [_radius_mm(0.020, 24, "sourcebook-trafficability"),
                  _radius_mm(0.015, 14, "sourcebook-trafficability"),
