@@ -1,0 +1,364 @@
+"""Ways over a height map: what a metre costs, the cheapest way, rocks in it, and the march along it.
+
+Energy and time come from the wheel model at each slope, the way from SciPy's Dijkstra on the eight neighbours of each
+cell. Slopes shorter than a cell, turning, and braking that would charge the battery are left out.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from . import catalog, mission, power, sky
+from ._fields import check
+from .design import Model
+
+MODES = ("drive", "science", "charge", "sleep", "arrived", "empty", "stalled")
+DRIVE, SCIENCE, CHARGE, SLEEP, ARRIVED, EMPTY, STALLED = range(7)
+
+
+# ---- what a metre costs ----------------------------------------------------------------------------------------
+
+def per_metre(design, scenario, slope_deg, *, model=Model()):
+    """Energy of the wheels (J/m) and time (s/m) for a metre of ground, at the hub's or the allowed speed.
+
+    Parameters
+    ----------
+    design, scenario, model : Design, Scenario, Model
+        Of the scenario, soil, payload and `maximum_speed_m_s` count.
+    slope_deg : float or ndarray
+        Uphill positive; broadcasts with the design.
+
+    Returns
+    -------
+    wheel_j_per_m, second_per_m : float or ndarray
+        Infinity where the rover stalls or slides.
+    """
+    short = replace(scenario, slope_deg=slope_deg, duration_earth_days=model.time_step_h / 24)  # one step to march
+    now = mission.evaluate(design, short, model)
+    droop = 1 - model.motor_droop * np.clip(now.wheel_torque_nm / np.asarray(design.peak_wheel_torque_nm), 0, 1)
+    speed, _, hub_w = mission.cruise_speed(
+        np.inf, 0.0, design.wheel_count, now.wheel_torque_nm, now.slip, design.wheel_radius_m, 1.0,
+        model.drivetrain_efficiency, model.hub_no_load_speed_rad_s * droop, scenario.maximum_speed_m_s)
+    with np.errstate(all="ignore"):
+        second = np.where(now.stalled | now.buried | ~(speed > 0), np.inf, 1 / speed)
+        return np.where(np.isfinite(second), hub_w * second, np.inf)[()], second[()]
+
+
+def cost(design, scenario, *, model=Model(), limit_deg=34.5):
+    """Joules for a metre of ground as a function of the slope (deg), for `cheapest`: wheels, avionics and payload.
+
+    One design; the function interpolates a table in steps of 0.5 deg and is infinite beyond `limit_deg`.
+    """
+    if design.shape or scenario.shape:
+        raise ValueError("cost needs one design and one scenario; a way is one rover's")
+    slope = np.arange(-limit_deg, limit_deg + 0.25, 0.5)
+    wheel, second = per_metre(design, scenario, slope, model=model)
+    joule = wheel + (design.avionics_power_w + scenario.payload_power_w) * second
+    return lambda slope_deg: np.interp(slope_deg, slope, joule, left=np.inf, right=np.inf)
+
+
+def rocks_per_m2(diameter_m, area_fraction):
+    """Rocks wider than `diameter_m` on a square metre, where rocks cover `area_fraction` of the ground.
+
+    Golombek & Rapp (1997): those wider than D cover k exp(-q D), q = 1.79 + 0.152 / k. One covers pi D^2 / 4, so
+    N(> D) is the integral of 4 k q exp(-q x) / (pi x^2) from D on.
+    """
+    from scipy.special import exp1
+    k, diameter = np.asarray(area_fraction, float), np.asarray(diameter_m, float)
+    with np.errstate(all="ignore"):
+        q = 1.79 + 0.152 / k
+        return np.where(k > 0, 4 * k * q / np.pi * (np.exp(-q * diameter) / diameter - q * exp1(q * diameter)), 0.0)[()]
+
+
+def detour_factor(obstacle_m, width_m, area_fraction, *, height_over_diameter=0.5):
+    """Length driven over length gained, where rocks too tall to climb are driven around one by one.
+
+    Parameters
+    ----------
+    obstacle_m : float or ndarray
+        Tallest rock that is climbed, `Performance.obstacle_capability_m`.
+    width_m : float or ndarray
+        Width of the rover. A metre of its swath meets the rocks whose middle lies within width + diameter, and
+        passing one costs about that length.
+    area_fraction : float or ndarray
+        Of the ground, under rocks.
+    height_over_diameter : float
+    """
+    diameter = np.asarray(obstacle_m) / height_over_diameter
+    return 1 + rocks_per_m2(diameter, area_fraction) * (width_m + diameter) ** 2
+
+
+# ---- the cheapest way ------------------------------------------------------------------------------------------
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """A way over a map: energy (J), length over ground (m), cells (k, 2) as (row, column) from start to goal.
+
+    Without a way the energy and length are infinite, there are no cells, and `message` says why; else it is "".
+    `reach_j` is the least energy from the start to every cell of the map, infinity where none leads.
+    """
+    energy_j: float
+    length_m: float
+    cells: np.ndarray = field(repr=False)
+    reach_j: np.ndarray = field(repr=False)
+    message: str = ""
+
+
+def cheapest(terrain, joule_per_m, start, goal, *, tilt_limit_deg, edge_limit_deg, detour=1.0):
+    """The way of least energy between two cells, over the eight neighbours of each.
+
+    Parameters
+    ----------
+    terrain : Terrain
+    joule_per_m : callable
+        Energy of a metre of ground at a slope along the way (deg, uphill positive): `cost(...)`, or a function of
+        arrays. Infinity where the rover cannot go; never negative.
+    start, goal : (row, column)
+        Row 0 at the top.
+    tilt_limit_deg : float
+        No cell steeper than this, in its steepest direction, is entered.
+    edge_limit_deg : float
+        No step between cells is steeper than this, up or down.
+    detour : float or ndarray, shape of the map
+        Length driven over length gained, at least 1.
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
+    height, (rows, columns) = terrain.height_m, terrain.height_m.shape
+    tilt_limit, edge_limit = (check(name, value, 0, 90, scalar=True) for name, value in (
+        ("tilt_limit_deg", tilt_limit_deg), ("edge_limit_deg", edge_limit_deg)))
+    detour = np.broadcast_to(check("detour", detour, 1), height.shape)
+    ends = [tuple(int(i) for i in end) for end in (start, goal)]
+    for name, (row, column) in zip(("start", "goal"), ends):
+        if not (0 <= row < rows and 0 <= column < columns):
+            raise ValueError(f"{name} must be a cell (row, column) of the {rows} x {columns} map; got {(row, column)}")
+    tilt, index = terrain.slope(), np.arange(rows * columns, dtype=np.int32).reshape(rows, columns)
+    safe, edges = tilt <= tilt_limit, []
+    for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):            # each pair of neighbours once, driven both ways
+        here = np.s_[:rows - down, max(-right, 0):columns - max(right, 0)]
+        there = np.s_[down:, max(right, 0):columns - max(-right, 0)]
+        run, rise = terrain.step_m * np.hypot(down, right), height[there] - height[here]
+        slope, length = np.degrees(np.arctan2(rise, run)), np.hypot(run, rise) * (detour[here] + detour[there]) / 2
+        ok = safe[here] & safe[there] & (np.abs(slope) <= edge_limit)
+        a, b, slope, length = index[here][ok], index[there][ok], slope[ok], length[ok]
+        edges += [(a, b, joule_per_m(slope) * length), (b, a, joule_per_m(-slope) * length)]
+    source, target, joule = (np.concatenate(part) for part in zip(*edges))
+    if np.any(joule < 0):
+        raise ValueError(f"joule_per_m must not be negative: braking gives nothing back; got {joule.min():g} J an edge")
+    real = np.isfinite(joule)
+    graph = csr_array((joule[real], (source[real], target[real])), shape=(index.size, index.size))
+    first, last = (row * columns + column for row, column in ends)
+    energy, before = dijkstra(graph, indices=first, return_predecessors=True)
+    if not np.isfinite(energy[last]):
+        steep = [f"the {name} {end} tilts {tilt[end]:.1f} deg" for name, end in zip(("start", "goal"), ends)
+                 if not safe[end]]
+        why = " and ".join(steep) or f"{np.isfinite(energy).mean():.1%} of the map can be reached from {ends[0]}"
+        return Route(np.inf, np.inf, np.empty((0, 2), int), energy.reshape(rows, columns),
+                     f"no way within {tilt_limit:g} deg of tilt and {edge_limit:g} deg along the way: {why}")
+    path = [last]
+    while path[-1] != first:
+        path.append(int(before[path[-1]]))
+    cells = np.array(np.unravel_index(path[::-1], (rows, columns))).T
+    return Route(float(energy[last]), float(along(terrain, cells).ground_m.sum()), cells, energy.reshape(rows, columns))
+
+
+# ---- the march along it ----------------------------------------------------------------------------------------
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """What a march needs of a way: the distance of its points, the slope between them, places, and skylines.
+
+    Parameters
+    ----------
+    distance_m : ndarray, shape (k,)
+        From the start, on the map, rising.
+    slope_deg : ndarray, shape (k - 1,)
+        Along the way, uphill positive.
+    latitude_deg, longitude_deg : ndarray, shape (k,)
+    skyline_m, skylines : sequences of one length
+        Distance and `Skyline` of the points from which the sun is seen; none for a level horizon.
+    """
+    distance_m: np.ndarray
+    slope_deg: np.ndarray
+    latitude_deg: np.ndarray
+    longitude_deg: np.ndarray
+    skyline_m: tuple = ()
+    skylines: tuple = field(default=(), repr=False)
+
+    @property
+    def ground_m(self):
+        """Length of each leg over the ground."""
+        return np.diff(self.distance_m) / np.cos(np.radians(self.slope_deg))
+
+
+def along(terrain, cells, *, skyline_every_m=None, height_m=1.0, beyond=()):
+    """The Way through cells of a map; with `skyline_every_m` it looks around at that spacing and at the end."""
+    cells = np.asarray(cells)
+    x, y = terrain.place(cells[:, 0], cells[:, 1])
+    run = np.hypot(np.diff(x), np.diff(y))
+    distance, rise = np.r_[0.0, np.cumsum(run)], np.diff(terrain.height_m[cells[:, 0], cells[:, 1]])
+    stops = [] if skyline_every_m is None else np.unique(np.r_[
+        np.searchsorted(distance, np.arange(0, distance[-1], skyline_every_m)), len(distance) - 1])
+    return Way(distance, np.degrees(np.arctan2(rise, run)), *terrain.to_latlon(x, y), tuple(distance[i] for i in stops),
+               tuple(terrain.skyline(x[i], y[i], height_m, beyond=beyond) for i in stops))
+
+
+def ridge():
+    """The tabulated Way along Connecting Ridge, 1.9 km near the south pole, with its skylines 1 m above ground."""
+    rows, table = catalog.rows("ridge_route.csv"), catalog.rows("ridge_route_skylines.csv")
+    distance, latitude, longitude, height = (np.array([float(row[name]) for row in rows]) for name in (
+        "distance_m", "latitude_deg", "longitude_deg", "height_m"))
+    places = [name for name in table[0] if name != "azimuth_deg"]
+    azimuth = [float(row["azimuth_deg"]) for row in table]
+    slope = np.degrees(np.arctan2(np.diff(height), np.diff(distance)))
+    return Way(distance, slope, latitude, longitude, tuple(float(name[3:-1]) for name in places),
+               tuple(sky.Skyline(azimuth, [float(row[name]) for row in table]) for name in places))
+
+
+@dataclass(frozen=True, eq=False)
+class March:
+    """What became of a rover on its way, step by step; arrays with one column a lane, or none for one lane.
+
+    `mode` is an index of `MODES`. `arrival_h` is infinite where the rover does not arrive; `stranded_m` is then how
+    far it came, else infinite. `message` says which it was, and why: one sentence a lane.
+    """
+    time_h: np.ndarray
+    distance_m: np.ndarray
+    stored_wh: np.ndarray
+    solar_w: np.ndarray
+    load_w: np.ndarray
+    mode: np.ndarray
+    arrival_h: float
+    stranded_m: float
+    message: str
+
+    def hours(self, mode):
+        """Hours spent in one of `MODES`."""
+        return (self.mode == MODES.index(mode)).sum(0) * self.time_h[0]
+
+
+def march(way, design, scenario, *, model=Model(), delay_h=0.0, follow_sun=False, rest_soc=0.5, go_soc=0.9,
+          science_every_m=np.inf, science_h=0.0, detour=1.0, step_h=0.25):
+    """Drive along a way under the real sun: drive, do science, charge, sleep, until arrival, an empty pack or a stall.
+
+    The rover drives until its charge falls to `rest_soc`, then stands with the avionics on while the sun pays for
+    them and asleep otherwise (`Model.hibernation_power_w`), and goes on at `go_soc`. It is lost when its pack
+    reaches the floor. The payload runs during science only.
+
+    Parameters
+    ----------
+    way : Way
+    design, scenario, model : Design, Scenario, Model
+        One, or a population; `start_utc` is needed, and soil, payload, panel, speed and duration count.
+    delay_h : float or ndarray
+        Hours after `start_utc` at which to set out; broadcasts with the designs, so that one call tries many dates.
+    follow_sun : bool
+        The panel turns after the sun; else it keeps the scenario's azimuth.
+    rest_soc, go_soc : float
+        State of charge at which to stop, and to go on.
+    science_every_m, science_h : float
+        Spacing and length of the stops for science.
+    detour : float
+        Length driven over length of the way, as from `detour_factor`.
+    """
+    if scenario.start_utc is None:
+        raise ValueError("a march needs the real sun: give the scenario a start_utc, such as '2026-10-01'")
+    check("rest_soc", rest_soc, np.max(model.soc_floor), go_soc), check("go_soc", go_soc, rest_soc, 1)
+    check("science_every_m", science_every_m, above=0, infinite=True), check("science_h", science_h, 0)
+    lanes = np.broadcast_shapes(design.shape, scenario.shape, model.shape, np.shape(delay_h))
+    if len(lanes) > 1:
+        raise ValueError(f"a march takes one row of lanes; got shape {lanes}")
+
+    def column(value):
+        return np.broadcast_to(np.asarray(value, float), lanes or (1,))
+
+    def leg(record):
+        return replace(record, **{name: value[..., None] for name, value in record.numbers().items()
+                                 if np.ndim(value) and "." not in name})
+
+    wheel, second = (np.broadcast_to(x, (column(0).size, len(way.slope_deg))) for x in per_metre(
+        leg(design), leg(scenario), way.slope_deg, model=leg(model)))
+    length = way.ground_m * check("detour", detour, 1, scalar=True)
+    stuck = np.isinf(second)
+    end = np.where(stuck.any(1), way.distance_m[np.argmax(stuck, 1)], way.distance_m[-1])
+    clock, joules = (np.cumsum(np.c_[np.zeros(len(x)), np.where(stuck, 1e6, x * length)], axis=1) for x in (second, wheel))
+
+    def along_lane(x, xs, ys):
+        """Interpolation lane by lane: the lanes' rising tables end to end."""
+        shift = np.arange(len(x)) * 2 * xs.max()
+        return np.interp(np.minimum(x, xs[:, -1]) + shift, (xs + shift[:, None]).ravel(), ys.ravel())
+
+    points = np.broadcast_to(way.distance_m, clock.shape)
+    steps = int(np.ceil(24 * scenario.duration_earth_days / step_h))
+    time = np.arange(1, steps + 1) * step_h
+    date = sky.julian_date(scenario.start_utc) + (time[:, None] - step_h / 2 + np.atleast_1d(delay_h)) / 24
+    declination, noon = sky.subsolar_point(date)
+    light = []                                           # cos(i) times lit share at each place of a skyline
+    for at, seen in zip(way.skyline_m or (0.0,), way.skylines or (None,)):
+        lat, lon = (np.interp(at, way.distance_m, values) for values in (
+            way.latitude_deg, np.unwrap(way.longitude_deg, period=360)))
+        elevation, azimuth = power.sun_position(lat, lon - noon, declination)
+        light.append(power.incidence_factor(lat, lon - noon, scenario.panel_tilt_deg,
+                                            azimuth if follow_sun else scenario.panel_azimuth_deg, declination,
+                                            sky.lit_fraction(elevation, azimuth, seen)))
+    light = np.array([np.broadcast_to(x, (steps, column(0).size)) for x in light])
+    panel = column(power.panel_power(np.asarray(design.solar_area_m2), 1.0, efficiency=model.panel_efficiency,
+                                     dust_factor=model.dust_factor, solar_constant_w_m2=model.solar_constant_w_m2))
+    avionics, payload, asleep, capacity = (column(x) for x in (
+        design.avionics_power_w, scenario.payload_power_w, model.hibernation_power_w, design.battery_capacity_wh))
+    floor, into, out = column(model.soc_floor) * capacity, column(model.charge_efficiency), column(
+        model.discharge_efficiency)
+    stored, distance = np.maximum(column(model.soc_initial) * capacity, floor), column(0.0)
+    resting, work_h, stop, lost = column(0) > 0, column(0.0), column(science_every_m), column(0) > 0
+    log, lane = {name: [] for name in ("distance_m", "stored_wh", "solar_w", "load_w", "mode")}, np.arange(len(stored))
+    for step in range(steps):
+        if len(way.skylines) > 1:
+            k = np.clip(np.searchsorted(way.skyline_m, distance, "right") - 1, 0, len(way.skyline_m) - 2)
+            share = (distance - np.take(way.skyline_m, k)) / np.take(np.diff(way.skyline_m), k)
+            solar = panel * ((1 - share) * light[k, step, lane] + share * light[k + 1, step, lane])
+        else:
+            solar = panel * light[0, step]
+        resting = np.where(resting, stored < go_soc * capacity, stored <= rest_soc * capacity)
+        arrived, halted = distance >= way.distance_m[-1], (distance >= end) & (end < way.distance_m[-1])
+        mode = np.select([lost, arrived, halted, resting & (solar > avionics), resting, work_h > 0],
+                         [EMPTY, ARRIVED, STALLED, CHARGE, SLEEP, SCIENCE], DRIVE)
+        ahead = along_lane(along_lane(distance, points, clock) + 3600 * step_h, clock, points)
+        ahead = np.where(mode == DRIVE, np.minimum(np.minimum(ahead, end), stop), distance)
+        hub = (along_lane(ahead, points, joules) - along_lane(distance, points, joules)) / (3600 * step_h)
+        load = np.where(mode == SLEEP, asleep, avionics) + np.where(mode == SCIENCE, payload, 0) + hub
+        load = np.where(lost, 0.0, load)
+        net = np.where(lost, 0.0, solar - load)
+        stored = np.minimum(stored + step_h * np.where(net > 0, net * into, net / out), capacity)
+        lost = lost | (stored <= floor) & (mode < ARRIVED)
+        stored = np.maximum(stored, floor)
+        work_h = np.where(mode == SCIENCE, work_h - step_h, np.where((ahead >= stop) & (mode == DRIVE), science_h, work_h))
+        stop, distance = np.where((ahead >= stop) & (mode == DRIVE), stop + science_every_m, stop), ahead
+        for name, value in zip(log, (distance, stored, solar, load, mode)):
+            log[name].append(value)
+        if np.all(lost | (distance >= way.distance_m[-1]) | (mode == STALLED)):
+            break
+    log = {name: np.array(values) for name, values in log.items()}
+    time = time[:len(log["mode"])]
+    arrived = log["distance_m"][-1] >= way.distance_m[-1]
+    arrival = np.where(arrived, time[np.argmax(log["distance_m"] >= way.distance_m[-1], axis=0)], np.inf)
+    sentences = [_sentence(way, i, time, log, arrival[i], lost[i], end[i]) for i in range(len(stored))]
+    squeeze = (lambda x: x) if lanes else (lambda x: x[..., 0])
+    return March(time, **{name: squeeze(values) for name, values in log.items()}, arrival_h=squeeze(arrival)[()],
+                 stranded_m=squeeze(np.where(arrived, np.inf, log["distance_m"][-1]))[()],
+                 message=sentences if lanes else sentences[0])
+
+
+def _sentence(way, i, time, log, arrival_h, lost, end_m):
+    """Where one lane of a march ended, and why."""
+    distance = log["distance_m"][-1, i]
+    if np.isfinite(arrival_h):
+        return f"arrives after {arrival_h:.1f} h"
+    if lost:
+        alive = log["mode"][:, i] != EMPTY
+        dark = time[alive][-1] - max(time[alive][log["solar_w"][alive, i] > 0], default=0.0)
+        return f"stranded at {distance:.0f} m after {time[alive][-1]:.1f} h: pack empty, {dark:.1f} h after the last sun"
+    if distance >= end_m:
+        slope = way.slope_deg[np.searchsorted(way.distance_m, end_m, "right") - 1]
+        return f"stranded at {distance:.0f} m after {time[-1]:.1f} h: the wheels do not hold the slope of {slope:.1f} deg ahead"
+    return f"still at {distance:.0f} m of {way.distance_m[-1]:.0f} m after {time[-1]:.1f} h"
