@@ -14,7 +14,8 @@ from .terramechanics import Soil, Wheel
 _LAZY = {"random_designs": "sampling", "sweep": "sampling", "pareto_front": "tradespace",
          "intervals": "sampling", "attribution": "sampling", "fronts": "studies",
          "Explorer": "explorer", "write_report": "report",
-         "report": None, "tradespace": None, "validation": None, "figures": None, "explorer": None, "terrain": None}
+         "report": None, "tradespace": None, "validation": None, "figures": None, "explorer": None,
+         "route": None, "terrain": None}
 
 __all__ = ["DESIGN_SPACE", "Design", "Model", "Performance", "Scenario", "Soil", "Wheel", "evaluate", "mass", "power",
            "rover", "rover_names", "scenario", "scenario_names", "sky", "skyline", "skyline_sites", "soil",

@@ -5,7 +5,7 @@ cell. Slopes shorter than a cell, turning, and braking that would charge the bat
 """
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -34,8 +34,8 @@ def per_metre(design, scenario, slope_deg, *, model=Model()):
     wheel_j_per_m, second_per_m : float or ndarray
         Infinity where the rover stalls or slides.
     """
-    short = replace(scenario, slope_deg=slope_deg, duration_earth_days=model.time_step_h / 24)  # one step to march
-    now = mission.evaluate(design, short, model)
+    short = scenario.replace(slope_deg=slope_deg, duration_earth_days=model.time_step_h / 24)    # one step to march
+    now = mission.evaluate(design, short, model=model)
     droop = 1 - model.motor_droop * np.clip(now.wheel_torque_nm / np.asarray(design.peak_wheel_torque_nm), 0, 1)
     speed, _, hub_w = mission.cruise_speed(
         np.inf, 0.0, design.wheel_count, now.wheel_torque_nm, now.slip, design.wheel_radius_m, 1.0,
@@ -274,7 +274,7 @@ def march(way, design, scenario, *, model=Model(), delay_h=0.0, follow_sun=False
         return np.broadcast_to(np.asarray(value, float), lanes or (1,))
 
     def leg(record):
-        return replace(record, **{name: value[..., None] for name, value in record.numbers().items()
+        return record.replace(**{name: value[..., None] for name, value in record.numbers().items()
                                  if np.ndim(value) and "." not in name})
 
     wheel, second = (np.broadcast_to(x, (column(0).size, len(way.slope_deg))) for x in per_metre(
@@ -282,7 +282,8 @@ def march(way, design, scenario, *, model=Model(), delay_h=0.0, follow_sun=False
     length = way.ground_m * check("detour", detour, 1, scalar=True)
     stuck = np.isinf(second)
     end = np.where(stuck.any(1), way.distance_m[np.argmax(stuck, 1)], way.distance_m[-1])
-    clock, joules = (np.cumsum(np.c_[np.zeros(len(x)), np.where(stuck, 1e6, x * length)], axis=1) for x in (second, wheel))
+    clock, joules = (np.cumsum(np.c_[np.zeros(len(x)), np.where(stuck, 1e6, x * length)], axis=1)
+                     for x in (second, wheel))
 
     def along_lane(x, xs, ys):
         """Interpolation lane by lane: the lanes' rising tables end to end."""
@@ -332,8 +333,9 @@ def march(way, design, scenario, *, model=Model(), delay_h=0.0, follow_sun=False
         stored = np.minimum(stored + step_h * np.where(net > 0, net * into, net / out), capacity)
         lost = lost | (stored <= floor) & (mode < ARRIVED)
         stored = np.maximum(stored, floor)
-        work_h = np.where(mode == SCIENCE, work_h - step_h, np.where((ahead >= stop) & (mode == DRIVE), science_h, work_h))
-        stop, distance = np.where((ahead >= stop) & (mode == DRIVE), stop + science_every_m, stop), ahead
+        there = (ahead >= stop) & (mode == DRIVE)
+        work_h = np.where(mode == SCIENCE, work_h - step_h, np.where(there, science_h, work_h))
+        stop, distance = np.where(there, stop + science_every_m, stop), ahead
         for name, value in zip(log, (distance, stored, solar, load, mode)):
             log[name].append(value)
         if np.all(lost | (distance >= way.distance_m[-1]) | (mode == STALLED)):
@@ -354,11 +356,13 @@ def _sentence(way, i, time, log, arrival_h, lost, end_m):
     distance = log["distance_m"][-1, i]
     if np.isfinite(arrival_h):
         return f"arrives after {arrival_h:.1f} h"
+    until = f"stranded at {distance:.0f} m after "
     if lost:
         alive = log["mode"][:, i] != EMPTY
-        dark = time[alive][-1] - max(time[alive][log["solar_w"][alive, i] > 0], default=0.0)
-        return f"stranded at {distance:.0f} m after {time[alive][-1]:.1f} h: pack empty, {dark:.1f} h after the last sun"
+        last = time[alive][-1]
+        dark = last - max(time[alive][log["solar_w"][alive, i] > 0], default=0.0)
+        return f"{until}{last:.1f} h: pack empty, {dark:.1f} h after the last sun"
     if distance >= end_m:
         slope = way.slope_deg[np.searchsorted(way.distance_m, end_m, "right") - 1]
-        return f"stranded at {distance:.0f} m after {time[-1]:.1f} h: the wheels do not hold the slope of {slope:.1f} deg ahead"
+        return f"{until}{time[-1]:.1f} h: the wheels do not hold the slope of {slope:.1f} deg ahead"
     return f"still at {distance:.0f} m of {way.distance_m[-1]:.0f} m after {time[-1]:.1f} h"

@@ -205,8 +205,9 @@ def test_routes_on_the_real_ridge():
 
 @real_maps
 def test_the_tabulated_way_is_the_real_ridges():
-    ridge, way = terrain.read(SHARED / "connecting_ridge_10m.png"), route.ridge()
-    wide = [terrain.read(SHARED / f"{name}.png") for name in ("connecting_ridge_20m", "south_pole_240m", "south_pole_480m")]
+    ridge, *wide = (terrain.read(SHARED / f"{name}.png") for name in ("connecting_ridge_10m", "connecting_ridge_20m",
+                                                                      "south_pole_240m", "south_pole_480m"))
+    way = route.ridge()
     for at, seen in list(zip(way.skyline_m, way.skylines))[::6]:
         point = np.argmin(abs(way.distance_m - at))
         x, y = ridge.to_xy(way.latitude_deg[point], way.longitude_deg[point])
