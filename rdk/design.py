@@ -12,7 +12,7 @@ import numpy as np
 
 from ._fields import Record, number
 from .sky import Skyline, julian_date
-from .terramechanics import Soil, Wheel
+from .terramechanics import TRANSITIONS, Soil, Wheel
 
 
 class Variable(NamedTuple):
@@ -188,9 +188,6 @@ class Scenario(Record):
         if not isinstance(self.soil, Soil):
             raise ValueError(f"soil must be a Soil, such as rdk.soil('apollo-nominal'); got {self.soil!r}")
         super().__post_init__()
-
-
-TRANSITIONS = {"paper": (0.4, 0.2), "imposed-arc": (0.18, 0.32)}   # c_1, c_2 of each kernel: Wong & Reece (1967)
 
 
 @dataclass(frozen=True)

@@ -36,8 +36,7 @@ _MARCHED = (                                             # what the march reads 
     ("solar_constant_w_m2", "panel_efficiency", "dust_factor", "synodic_day_h", "drivetrain_efficiency",
      "hub_no_load_speed_rad_s", "motor_droop", "soc_initial", "soc_floor", "charge_efficiency",
      "discharge_efficiency", "stop_at_limit", "exact_floor"))
-_WAITING = (("model", "kernel", "paper"),
-            ("model", "sinkage_scale", 1.0), ("model", "axle_torque", 0))
+_WAITING = (("model", "axle_torque", 0),)
 
 
 @dataclass(frozen=True)
@@ -208,11 +207,8 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
         balance, capability = terramechanics.climb(
             design.wheel, scenario.soil, weight, scenario.slope_deg, slip_min=model.slip_min, slip_max=model.slip_max,
             capability_slip=model.slope_capability_slip, capability_limit_deg=model.slope_capability_limit_deg,
-            transition_c1=model.transition[0], transition_c2=model.transition[1],
-            grouser_lift_cap=model.grouser_lift_cap, shear_scale=model.shear_scale)
-        # surplus pull at both ends of the slip interval, on a descent
-        sliding = (balance.slip == 0) & (np.asarray(scenario.slope_deg) < 0) & ~np.asarray(balance.stalled)
-        stalled = balance.stalled | (balance.torque_nm > design.peak_wheel_torque_nm) | sliding
+            **{name: getattr(model, name) for name in terramechanics.OPTIONS})
+        stalled = balance.stalled | (balance.torque_nm > design.peak_wheel_torque_nm)
         march = partial(_traverse, design, scenario, model, balance.slip, balance.torque_nm, stalled, shape)
         traverse, log = march()
         area = thermal.enclosure_area(design.chassis_mass_kg, model.enclosure_area_base_m2,
@@ -238,8 +234,8 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
         traverse, total_mass_kg=mass.total_kg, slope_capability_deg=capability, stalled=stalled,
         thermal_survival=hot_survival & cold_survival, feasible=feasible, buried=balance.buried, slip=balance.slip,
         sinkage_m=balance.sinkage_m, wheel_torque_nm=balance.torque_nm, hot_temperature_c=hot, cold_temperature_c=cold,
-        obstacle_capability_m=obstacle, ground_pressure_kpa=pressure, sliding=sliding, hot_survival=hot_survival,
-        cold_survival=cold_survival, structure_share=mass.chassis_kg / mass.total_kg,
+        obstacle_capability_m=obstacle, ground_pressure_kpa=pressure, sliding=balance.sliding,
+        hot_survival=hot_survival, cold_survival=cold_survival, structure_share=mass.chassis_kg / mass.total_kg,
         wheel_gap_m=design.wheelbase_m - along)
     return Performance(**{name: _shaped(value, shape) for name, value in fields.items()}, log=log,
                        arrival_h=partial(_arrival_h, march, shape),

@@ -26,7 +26,8 @@ from ._fields import Record, check, number, together, unknown
 
 SLIP_MIN, SLIP_MAX = -0.9, 0.95                          # where the slip balance is sought
 CAPABILITY_SLIP, CAPABILITY_LIMIT_DEG = 0.6, 35.0        # peak-pull convention; steepest slope reported
-KERNELS = {"paper": (_contact, 0.4, 0.2), "imposed-arc": (_arc, 0.18, 0.32)}     # with their c_1 and c_2
+KERNELS = {"paper": _contact, "imposed-arc": _arc}
+TRANSITIONS = {"paper": (0.4, 0.2), "imposed-arc": (0.18, 0.32)}         # c_1 and c_2 (Wong & Reece 1967)
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,9 @@ class KernelOptions(TypedDict, total=False):
     grouser_lift_cap: ArrayLike
     shear_scale: ArrayLike
     sinkage_scale: ArrayLike
+
+
+OPTIONS = tuple(KernelOptions.__annotations__)           # fields of `Model`, too
 
 
 class WheelForces(NamedTuple):
@@ -370,7 +374,8 @@ def _at_capability(slip, limit_deg):
 
 def _reported(forces, options):
     """Forces or balance with the sinkage as it is to be reported."""
-    return forces._replace(sinkage_m=forces.sinkage_m * np.asarray(options.get("sinkage_scale", 1.0)))
+    sinkage = np.multiply(forces.sinkage_m, options.get("sinkage_scale", 1.0))
+    return forces._replace(sinkage_m=sinkage if sinkage.ndim else float(sinkage))
 
 
 def patch_of(wheel, soil, *, kernel="paper", transition_c1=None, transition_c2=None, grouser_lift_cap=0.6,
@@ -378,7 +383,7 @@ def patch_of(wheel, soil, *, kernel="paper", transition_c1=None, transition_c2=N
     """The kernel's module, the patch and the arrays as flat lanes, and the shape to give back."""
     if kernel not in KERNELS:
         raise unknown("unknown kernel", kernel, list(KERNELS))
-    module, c1, c2 = KERNELS[kernel]
+    c1, c2 = TRANSITIONS[kernel]
     c1 = c1 if transition_c1 is None else check("transition_c1", transition_c1, 0, 1)
     c2 = c2 if transition_c2 is None else check("transition_c2", transition_c2, 0, 1)
     if np.any(np.asarray(c1) + c2 > 1) or np.any(np.asarray(c1) <= 0):
@@ -394,14 +399,14 @@ def patch_of(wheel, soil, *, kernel="paper", transition_c1=None, transition_c2=N
     rows = (r, wheel.width_m, _k_eff(wheel, soil) * r ** n, n, gamma * soil.cohesion_kpa * 1000,
             gamma * np.tan(np.radians(soil.friction_angle_deg)), np.asarray(soil.shear_modulus_mm) / 1000, c1, c2)
     lanes = np.stack([np.broadcast_to(row, shape).ravel() for row in (*rows, *arrays.values())])
-    return module, _contact.Patch(*lanes[:len(rows)]), lanes[len(rows):], shape
+    return KERNELS[kernel], _contact.Patch(*lanes[:len(rows)]), lanes[len(rows):], shape
 
 
 def _solve(solver, wheel, soil, options, **arrays):
     """A solver of the kernel (or a function) on blocks of lanes that fit the cache; floats for one lane."""
     for name in options:
-        if name not in KernelOptions.__annotations__:
-            raise TypeError(str(unknown("unexpected keyword argument", name, list(KernelOptions.__annotations__))))
+        if name not in OPTIONS:
+            raise TypeError(str(unknown("unexpected keyword argument", name, OPTIONS)))
     module, patch, lanes, shape = patch_of(wheel, soil, **arrays, **options)
     solve, count = solver if callable(solver) else getattr(module, solver), lanes.shape[1]
     with np.errstate(all="ignore"):                      # a lane without a solution is NaN, not a warning

@@ -9,9 +9,10 @@ Brent's method, an hourly loop), so that a benchmark against it measures the eng
 
 Inputs are plain dicts with the public field names of Design, Scenario, Soil and Wheel.
 """
-from math import atan2, ceil, cos, isnan, nan, pi, radians, sin, sqrt
+from math import acos, atan2, ceil, copysign, cos, exp, isnan, nan, pi, radians, sin, sqrt, tan
 
 import numpy as np
+from scipy.integrate import quad
 from scipy.optimize import brentq
 
 MODEL = {
@@ -114,6 +115,50 @@ def wheel_forces(wheel, soil, vertical_load_n, slip, model=MODEL, quadrature="tr
     return {"drawbar_pull_n": pull, "torque_nm": torque,
             "sinkage_m": wheel["radius_m"] * (1.0 - cos(theta_1)),       # z_0 = r (1 - cos theta_1)
             "entry_angle_rad": theta_1}
+
+
+def imposed_arc_forces(wheel, soil, vertical_load_n, slip, model=MODEL):
+    """The second kernel, one wheel, by adaptive quadrature: static sinkage, slip-sinkage factor, level from balance."""
+    r, b, n = wheel["radius_m"], wheel["width_m"], soil["sinkage_exponent"]
+    k_r = 1e3 * (soil["cohesive_modulus_kn_m_n1"] / b + soil["frictional_modulus_kn_m_n2"]) * r**n
+
+    def integral(f, edges):
+        return sum(quad(f, *pair, epsabs=1e-11, epsrel=1e-10, limit=200)[0] for pair in zip(edges, edges[1:]))
+
+    def static_surplus(theta_s):
+        held = integral(lambda t: (cos(t) - cos(theta_s))**n * cos(t), [0.0, theta_s])
+        return 2 * b * r * k_r * held - vertical_load_n
+
+    nothing = dict.fromkeys(("drawbar_pull_n", "torque_nm", "sinkage_m", "entry_angle_rad", "stress_level"), nan)
+    if static_surplus(pi / 2) < 0:
+        return nothing
+    theta_s = brentq(static_surplus, 1e-6, pi / 2, xtol=1e-14)
+    z = r * (1 - cos(theta_s)) * (1 + abs(slip)) / (1 - 0.5 * abs(slip))
+    if z >= r:
+        return nothing
+    theta_1 = acos(1 - z / r)
+    theta_m = (0.18 + 0.32 * abs(slip)) * theta_1
+    edges = sorted({0.0, theta_m, theta_1, shear_reversal_angle(theta_1, slip, r)} - {None})
+    gamma_g, c = grouser_factor(wheel, model), 1e3 * soil["cohesion_kpa"]
+    tan_phi, k_mm = tan(radians(soil["friction_angle_deg"])), soil["shear_modulus_mm"]
+
+    def sigma(t):
+        return float(normal_stress(t, theta_1, theta_m, r, b, soil))
+
+    def mu(t):
+        j = float(shear_displacement(t, theta_1, slip, r))
+        return gamma_g * (1 - exp(-abs(j) / (1e-3 * k_mm))) * copysign(1, j)
+
+    i_1 = r * b * integral(lambda t: sigma(t) * (cos(t) + tan_phi * mu(t) * sin(t)), edges)
+    i_2 = r * b * integral(lambda t: mu(t) * sin(t), edges)
+    level = (vertical_load_n - c * i_2) / i_1
+
+    def tau(t):
+        return mu(t) * (c + level * sigma(t) * tan_phi)
+
+    return {"drawbar_pull_n": r * b * integral(lambda t: tau(t) * cos(t) - level * sigma(t) * sin(t), edges),
+            "torque_nm": r * r * b * integral(tau, edges), "sinkage_m": z, "entry_angle_rad": theta_1,
+            "stress_level": level}
 
 
 # --- Mobility ---------------------------------------------------------------------------------------------

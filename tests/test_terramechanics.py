@@ -447,6 +447,144 @@ def test_climb_is_slip_balance_and_slope_capability():
     np.testing.assert_allclose(capability, slope_capability(wheel, soil, weight), rtol=1e-9)
 
 
+# ---- the imposed arc ---------------------------------------------------------------------------------------
+
+def arc_forces(wheel, soil, load, slip, **options):
+    return wheel_forces(wheel, soil, load, slip, kernel="imposed-arc", **options)
+
+
+@settings(quick, max_examples=40)
+@given(wheels, st.builds(Soil, st.floats(0.5, 1.6), st.floats(0, 20), st.floats(100, 5000), st.floats(0, 3),
+                         st.floats(15, 55), st.floats(2, 30)), loads, slips)
+@example(WHEEL, MARE, 6.0, 0.0)
+@example(WHEEL, dataclasses.replace(MARE, shear_modulus_mm=2.0), 6.0, -0.3)      # its shear changes sign within an arc
+@example(BURIED, LOOSE, 90.0, 0.3)
+@example(WHEEL, LOOSE, 90.0, 0.9)                                                # sinks to its axle by slip alone
+def test_imposed_arc_agrees_with_adaptive_quadrature(wheel, soil, load, slip):
+    found = arc_forces(wheel, soil, load, slip)
+    expected = scalar.imposed_arc_forces(as_dict(wheel, WHEEL_FIELDS), as_dict(soil, SOIL_FIELDS), load, slip)
+    scale = {"drawbar_pull_n": load, "torque_nm": max(abs(expected["torque_nm"]), 1e-3 * load * wheel.radius_m)}
+    for name, value in expected.items():
+        # 3e-7 was the worst of 800 random wheels; a load that cohesion nearly carries leaves a small difference
+        np.testing.assert_allclose(getattr(found, name), value, rtol=1e-6, atol=1e-6 * scale.get(name, 0),
+                                   err_msg=name)
+
+
+def test_imposed_arc_balances_the_load_with_the_stresses_it_reports():
+    slip = np.array([-0.6, 0.0, 0.3, 0.9])[:, None]
+    forces = arc_forces(WHEEL, MARE, 8.0, slip)
+    angle = np.linspace(0, 1, 4001) * forces.entry_angle_rad
+    stress = contact_stress(WHEEL, MARE, forces.entry_angle_rad, slip, angle, kernel="imposed-arc",
+                            stress_level=forces.stress_level)
+    sigma, tau, area = stress.normal_stress_pa, stress.shear_stress_pa, WHEEL.radius_m * WHEEL.width_m
+
+    def integral(f):
+        return area * np.trapezoid(f, angle, axis=1)
+
+    # 4000 trapezoids with a kink between two of them: 1e-6
+    np.testing.assert_allclose(integral(sigma * np.cos(angle) + tau * np.sin(angle)), 8.0, rtol=1e-5)
+    np.testing.assert_allclose(integral(tau * np.cos(angle) - sigma * np.sin(angle)),
+                               forces.drawbar_pull_n[:, 0], atol=1e-5 * 8)
+    np.testing.assert_allclose(WHEEL.radius_m * integral(tau), forces.torque_nm[:, 0], rtol=1e-5)
+    np.testing.assert_allclose(stress.transition_angle_rad / forces.entry_angle_rad,
+                               np.broadcast_to(0.18 + 0.32 * abs(slip), angle.shape), rtol=1e-12)    # rounding
+
+
+def test_static_sinkage_of_linear_soil_is_its_closed_form():
+    load = np.array([0.01, 1.0, 8.0, 50.0])
+    sinkage = arc_forces(WHEEL, MARE, load, 0.0).sinkage_m                # n is 1
+    theta = np.arccos(1 - sinkage / 0.1)
+    k_eff = 1e3 * (MARE.cohesive_modulus_kn_m_n1 / 0.08 + MARE.frictional_modulus_kn_m_n2)
+    held = 2 * 0.08 * 0.1 * k_eff * 0.1 * (theta / 2 - np.sin(2 * theta) / 4)
+    np.testing.assert_allclose(held, load, rtol=1e-8)                     # arccos near 1 costs half the digits
+
+
+@settings(quick, max_examples=30)
+@given(wheels, soils, loads, st.floats(0, 0.95))
+def test_imposed_sinkage_grows_with_slip_alike_in_both_directions(wheel, soil, load, slip):
+    forces = arc_forces(wheel, soil, load, np.array([0.0, slip, -slip]))
+    still, forward, backward = forces.sinkage_m
+    assume(forward == forward)
+    np.testing.assert_allclose(forward / still, (1 + slip) / (1 - 0.5 * slip), rtol=1e-9)    # a difference of cosines
+    assert backward == forward
+    heavy = arc_forces(wheel, soil, 1.1 * load, slip).sinkage_m
+    assert not heavy <= forward
+    # cohesion, friction and grousers do not enter the sinkage
+    other = dataclasses.replace(soil, cohesion_kpa=5.0, friction_angle_deg=20.0)
+    bare = arc_forces(dataclasses.replace(wheel, grouser_count=0), other, load, slip)
+    np.testing.assert_allclose(bare.sinkage_m, forward, rtol=1e-12)       # another order of summation
+
+
+def test_imposed_arc_of_a_frictionless_smooth_soil_only_resists():
+    slippery = Soil(1.0, 1.4, 820.0, 0.0, 0.0, 18.0)
+    found = arc_forces(WHEEL, slippery, 8.0, np.array([-0.5, 0.0, 0.5]))
+    assert np.all(found.torque_nm == 0) and np.all(found.drawbar_pull_n < 0)
+    balance = slip_balance(WHEEL, slippery, 8.0, [0.0, -0.1, -8.0], kernel="imposed-arc")
+    assert balance.stalled.all() and balance.sliding.tolist() == [False, False, True]
+
+
+def test_imposed_balance_and_capability_agree_with_brent():
+    wheel, soil, weight, rng = random_wheels(60, seed=31)
+    slope = np.radians(rng.uniform(-30, 25, 60))
+    balance, capability = climb(wheel, soil, weight, np.degrees(slope), kernel="imposed-arc")
+    alone = slip_balance(wheel, soil, weight * np.cos(slope), weight * np.sin(slope), kernel="imposed-arc")
+    for name, value in balance._asdict().items():
+        np.testing.assert_allclose(value, getattr(alone, name), rtol=1e-9, atol=1e-12, err_msg=name)
+    np.testing.assert_allclose(capability, slope_capability(wheel, soil, weight, kernel="imposed-arc"), rtol=1e-9)
+    met = 0
+    for i in range(60):
+        def surplus(s, alpha=None):
+            a = slope[i] if alpha is None else alpha
+            return (arc_forces(wheel[i], soil[i], weight[i] * np.cos(a), s).drawbar_pull_n - weight[i] * np.sin(a))
+
+        low, high = surplus(-0.9), surplus(0.95)
+        if low < 0 < high:
+            assert not balance.stalled[i]
+            # both root finders stop at about 1e-11
+            assert balance.slip[i] == pytest.approx(brentq(surplus, -0.9, 0.95, xtol=1e-13), abs=1e-8)
+            met += 1
+        at_limit = surplus(0.6, np.radians(35))
+        if surplus(0.6, 0.0) > 0 > at_limit:
+            expected = np.degrees(brentq(lambda a: surplus(0.6, a), 0, np.radians(35), xtol=1e-13))
+            assert capability[i] == pytest.approx(expected, abs=1e-6)
+        else:
+            assert capability[i] == (35 if at_limit >= 0 else 0)
+    assert met > 30
+
+
+def test_a_wheel_that_digs_itself_in_is_buried_and_one_that_need_not_slip_is_not():
+    wheel, load = Wheel(0.10, 0.05), 60.0
+    z_0 = arc_forces(wheel, LOOSE, load, 0.0).sinkage_m
+    assert 0.27 < z_0 / 0.10 < 0.9                       # at slip 0.95 it would be 3.7 times as deep: beyond the axle
+    easy = arc_forces(wheel, LOOSE, load, 0.1).drawbar_pull_n
+    found = slip_balance(wheel, LOOSE, load, [easy, 2 * load], kernel="imposed-arc")
+    assert found.buried.tolist() == [False, True] and found.stalled.tolist() == [False, True]
+    assert found.slip[0] == pytest.approx(0.1, abs=1e-8) and np.isnan([found.slip[1], found.torque_nm[1]]).all()
+
+
+def test_sinkage_scale_moves_the_reading_alone():
+    for kernel in KERNELS:
+        plain, double = (climb(WHEEL, MARE, 8.0, 10.0, kernel=kernel, sinkage_scale=x) for x in (1.0, [2.0, 3.0]))
+        np.testing.assert_allclose(double[0].sinkage_m / plain[0].sinkage_m, [2, 3], rtol=1e-14)     # rounding
+        for name in set(plain[0]._fields) - {"sinkage_m"}:
+            np.testing.assert_allclose(getattr(double[0], name), getattr(plain[0], name), rtol=1e-12)
+        np.testing.assert_allclose(double[1], plain[1], rtol=1e-12)      # another order of summation
+
+
+def test_a_mission_takes_either_kernel():
+    design, scenario = rdk.rover("Rashid-1"), rdk.scenario("equatorial_mare_traverse")
+    for kernel in KERNELS:
+        model = rdk.Model(kernel=kernel, sinkage_scale=1.5, shear_scale=0.9)
+        result = rdk.evaluate(design, scenario, model=model)
+        weight = result.total_mass_kg * model.gravity_m_s2 / design.wheel_count
+        balance, capability = climb(design.wheel, scenario.soil, weight, scenario.slope_deg, kernel=kernel,
+                                    sinkage_scale=1.5, shear_scale=0.9)
+        assert (result.slip, result.sinkage_m, result.slope_capability_deg) == (
+            balance.slip, balance.sinkage_m, capability)
+        down = rdk.evaluate(design, dataclasses.replace(scenario, slope_deg=-85.0), model=model)
+        assert down.sliding and down.stalled and not down.feasible and down.range_km == 0
+
+
 # ---- buried wheels -----------------------------------------------------------------------------------------
 
 def test_a_wheel_that_the_soil_cannot_carry_is_buried():
@@ -536,35 +674,37 @@ def test_a_wheel_buried_on_the_flat_climbs_no_slope():
 
 # ---- forms of input ----------------------------------------------------------------------------------------
 
-def calls(radius, friction, load):
+def calls(radius, friction, load, kernel="paper"):
     """Every public function of the module on wheels, soils and loads of any shape."""
     wheel = dataclasses.replace(WHEEL, radius_m=radius)
     soil = dataclasses.replace(MARE, friction_angle_deg=friction)
-    balance, capability = climb(wheel, soil, load, 10.0)
-    alone = slip_balance(wheel, soil, load, 1.0)
-    stress = contact_stress(wheel, soil, 0.4, 0.2, np.asarray(load) * 0 + 0.1)
-    return {**wheel_forces(wheel, soil, load, 0.2)._asdict(), "capability": capability,
+    balance, capability = climb(wheel, soil, load, 10.0, kernel=kernel)
+    alone = slip_balance(wheel, soil, load, 1.0, kernel=kernel)
+    stress = contact_stress(wheel, soil, 0.4, 0.2, np.asarray(load) * 0 + 0.1, kernel=kernel)
+    return {**wheel_forces(wheel, soil, load, 0.2, kernel=kernel)._asdict(), "capability": capability,
             **{f"balance.{name}": value for name, value in balance._asdict().items()},
             **{f"alone.{name}": value for name, value in alone._asdict().items()},
-            "alone.capability": slope_capability(wheel, soil, load), **stress._asdict()}
+            "alone.capability": slope_capability(wheel, soil, load, kernel=kernel), **stress._asdict()}
 
 
-def test_scalar_array_and_broadcast_forms_agree():
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_scalar_array_and_broadcast_forms_agree(kernel):
     radius, friction, load = np.array([0.06, 0.1, 0.15]), np.array([[30.0], [46.0]]), np.array(8.0)
-    found = calls(radius, friction, load)
+    found = calls(radius, friction, load, kernel)
     for name, value in found.items():
         assert value.shape == (2, 3), name
     for i in range(2):
         for j in range(3):
-            for name, value in calls(float(radius[j]), float(friction[i, 0]), 8.0).items():
+            for name, value in calls(float(radius[j]), float(friction[i, 0]), 8.0, kernel).items():
                 assert isinstance(value, (float, bool)), name
                 # a lane of a batch sums in another order than a lane alone: rounding
                 np.testing.assert_allclose(found[name][i, j], value, rtol=1e-10, atol=1e-13, err_msg=name)
 
 
+@pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize("shape", [(0,), (1,), (1, 1), (3, 0), (2, 1, 2)])
-def test_results_keep_the_shape_of_the_input(shape):
-    for name, value in calls(np.full(shape, 0.1), 46.0, np.full(shape, 8.0)).items():
+def test_results_keep_the_shape_of_the_input(shape, kernel):
+    for name, value in calls(np.full(shape, 0.1), 46.0, np.full(shape, 8.0), kernel).items():
         assert isinstance(value, np.ndarray) and value.shape == shape, name
         assert value.dtype == (bool if name.endswith(("stalled", "buried", "sliding")) else float), name
     assert np.shape(grouser_lift(Wheel(np.full(shape, 0.1), 0.08))) == shape
@@ -621,6 +761,9 @@ BAD = [
      r"transition_c2 at most 1; got 0\.9 and 0\.2$"),
     (lambda: wheel_forces(WHEEL, MARE, 8.0, 0.2, transition_c1=0.0), "transition_c1 must be above 0"),
     (lambda: wheel_forces(WHEEL, MARE, 8.0, 0.2, shear_scale=0.0), "shear_scale must be positive.*; got 0"),
+    (lambda: wheel_forces(WHEEL, MARE, 8.0, 0.2, kernel="imposed arc"), "unknown kernel 'imposed arc'.*imposed-arc"),
+    (lambda: wheel_forces(WHEEL, MARE, 8.0, 0.2, sinkage_scale=0), "sinkage_scale must be positive.*; got 0"),
+    (lambda: climb(WHEEL, MARE, [8.0, 9.0], [1.0, 2.0, 3.0]), r"weight_n \(2,\), slope_deg \(3,\)"),
     (lambda: wheel_forces(WHEEL, MARE, 8.0, 0.2, grouser_lift_cap=-1),
      "grouser_lift_cap must be zero or more.*; got"),
     (lambda: slip_balance(WHEEL, MARE, 8.0, np.nan), "required_pull_n must be finite; got nan$"),
@@ -647,3 +790,8 @@ BAD = [
 def test_bad_input_is_named(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+def test_an_unknown_option_offers_the_nearest():
+    with pytest.raises(TypeError, match="unexpected keyword argument 'shearscale'.*shear_scale"):
+        wheel_forces(WHEEL, MARE, 8.0, 0.2, shearscale=0.9)
