@@ -22,9 +22,5 @@ from .rules import (  # noqa: F401
     ledger_verdicts, pull_intervals, rediscovery_distances, rocker_bogie_share, sobol_bars,
     variables_on_fronts, verdict)
 from .before_mission import growth, load_transfer, pull_and_demand, speed_limits, stall, step_convergence  # noqa: F401
-from .before_wheel import (  # noqa: F401
-    power_split, pressure_sinkage, quadrature_error, shear_mobilisation, sinkage_against_load, stress_against_angle,
-    wheel_against_size, wheel_against_slip)
 from .evidence import (  # noqa: F401
     day_of_power, efficiency_stack, fixed_overheads, mass_sensitivity, node_temperatures, panel_incidence, sun_paths)
-from .measurements import resistance_against_slip, sinkage_against_factor, sinkage_bias  # noqa: F401
