@@ -88,7 +88,7 @@ def requirements(design, scenario, draws=400, seed=0, model=Model()):
         if record.shape:
             raise ValueError(f"{name} must be a single one; got arrays of shape {record.shape}")
     found = intervals(design, scenario, draws=draws, seed=seed, model=model)
-    inputs = uncertain_inputs(scenario, draws, seed, model)
+    inputs = uncertain_inputs(scenario, draws=draws, seed=seed, model=model)
     demands = [("feasible", ">=", 1.0), *posed(scenario)[1].constraints]
     return [_requirement(metric, sign, limit, found, inputs) for metric, sign, limit in demands]
 

@@ -9,18 +9,18 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
+from collections.abc import Iterable
 
 import numpy as np
 import pandas as pd
 
 from . import catalog
-from ._fields import check
-from .design import DESIGN_SPACE, Model
+from ._fields import check, unknown
+from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import evaluate, mass_of
-from .sampling import METRICS, decode, drawn, perturbed, replaced
-from .terramechanics import wheel_forces
-from .tradespace import beaten, minimised, pareto_front
-from .validation import single_wheel_conditions
+from .sampling import METRICS, decode, replaced
+from .tradespace import Front, beaten, minimised, pareto_front
+from .uncertainty import inputs_at, uncertain_names
 
 SHEAR_SCALES = (0.70, 0.85, 1.00, 1.15, 1.30)
 """Factors on the shear stress in the paper's robustness study."""
@@ -32,7 +32,7 @@ CEILING_SHARE = 0.01
 
 # ---- statistics of fronts ----------------------------------------------------------------------------------
 
-def front_statistics(fronts):
+def front_statistics(fronts: Iterable[Front]) -> pd.DataFrame:
     """What the designs of each front have in common.
 
     Parameters
@@ -50,42 +50,42 @@ def front_statistics(fronts):
         their ceilings, wheel width at its floor (all within 1 % of the searched range) and in the lowest 5 %
         of it; medians of battery, array, radius and width; hypervolume. NaN where a front is empty.
     """
+    def at_ceiling(name):
+        return np.mean(place(front.designs, name) >= 1 - CEILING_SHARE)
+
     rows = []
     for front in fronts:
         d, p = front.designs, front.performance
-        row = dict(
-            scenario=front.scenario.name, seed=front.problem.seed, shear_scale=front.model.shear_scale,
-            obstacle_height_m=front.scenario.required_obstacle_height_m,
-            generations=len(front.objective_history), designs=len(front))
+        row = {"scenario": front.scenario.name, "seed": front.problem.seed, "shear_scale": front.model.shear_scale,
+               "obstacle_height_m": front.scenario.required_obstacle_height_m,
+               "generations": len(front.objective_history), "designs": len(front)}
         if len(front):
-            at = {name: place(d, name) for name in ("wheel_radius_m", "wheel_width_m", "grouser_height_m",
-                                                     "grouser_count")}
-            slope, capped = p.slope_capability_deg, p.range_km >= p.range_km.max() * (1 - 1e-6)
-            row |= dict(
-                range_min_km=p.range_km.min(), range_max_km=p.range_km.max(), range_lightest_km=p.range_km[0],
-                mass_min_kg=p.total_mass_kg.min(), mass_max_kg=p.total_mass_kg.max(),
-                slope_min_deg=slope.min(), slope_median_deg=np.median(slope), slope_max_deg=slope.max(),
-                slope_at_cap_deg=np.median(slope[capped]),
-                four_wheels=np.mean(d.wheel_count == 4),
-                radius_at_ceiling=np.mean(at["wheel_radius_m"] >= 1 - CEILING_SHARE),
-                grouser_height_at_ceiling=np.mean(at["grouser_height_m"] >= 1 - CEILING_SHARE),
-                grouser_count_at_ceiling=np.mean(at["grouser_count"] >= 1 - CEILING_SHARE),
-                width_at_floor=np.mean(at["wheel_width_m"] <= CEILING_SHARE),
-                width_lowest_5pct=np.mean(at["wheel_width_m"] <= 0.05),
-                radius_median_m=np.median(d.wheel_radius_m),
-                width_median_m=np.median(d.wheel_width_m), battery_median_wh=np.median(d.battery_capacity_wh),
-                array_median_m2=np.median(d.solar_area_m2), hypervolume=front.history[-1])
+            width, slope = place(d, "wheel_width_m"), p.slope_capability_deg
+            row |= {"range_min_km": p.range_km.min(), "range_max_km": p.range_km.max(),
+                    "range_lightest_km": p.range_km[0],
+                    "mass_min_kg": p.total_mass_kg.min(), "mass_max_kg": p.total_mass_kg.max(),
+                    "slope_min_deg": slope.min(), "slope_median_deg": np.median(slope), "slope_max_deg": slope.max(),
+                    "slope_at_cap_deg": np.median(slope[p.range_km >= p.range_km.max() * (1 - 1e-6)]),
+                    "four_wheels": np.mean(d.wheel_count == 4),
+                    "radius_at_ceiling": at_ceiling("wheel_radius_m"),
+                    "grouser_height_at_ceiling": at_ceiling("grouser_height_m"),
+                    "grouser_count_at_ceiling": at_ceiling("grouser_count"),
+                    "width_at_floor": np.mean(width <= CEILING_SHARE), "width_lowest_5pct": np.mean(width <= 0.05),
+                    "radius_median_m": np.median(d.wheel_radius_m), "width_median_m": np.median(d.wheel_width_m),
+                    "battery_median_wh": np.median(d.battery_capacity_wh),
+                    "array_median_m2": np.median(d.solar_area_m2), "hypervolume": front.history[-1]}
         rows.append(row)
     return pd.DataFrame(rows)
 
 
-def place(designs, name):
+def place(designs: Design, name: str) -> np.ndarray:
     """Where a variable lies in its searched range, 0 to 1."""
     variable = DESIGN_SPACE[name]
     return (getattr(designs, name) - variable.low) / (variable.high - variable.low)
 
 
-def over_generations(scenarios, seeds, generations, executor=None, **options):
+def over_generations(scenarios: Iterable[Scenario], seeds: Iterable[int], generations: Iterable[int], *, executor=None,
+                     **options) -> pd.DataFrame:
     """Front statistics at several generations of the same searches.
 
     Parameters
@@ -110,7 +110,7 @@ def over_generations(scenarios, seeds, generations, executor=None, **options):
     return front_statistics(front for fronts in searches for front in fronts)
 
 
-def fronts_at(scenario, generations, options):
+def fronts_at(scenario: Scenario, generations: list, options: dict) -> list[Front]:
     """The fronts of one search at some generations; runs in any process."""
     fronts = []
 
@@ -122,7 +122,7 @@ def fronts_at(scenario, generations, options):
     return fronts
 
 
-def crossover(statistics):
+def crossover(statistics: pd.DataFrame) -> pd.DataFrame:
     """Lowest required obstacle height at which rocker-bogie designs enter each front.
 
     Parameters
@@ -146,7 +146,7 @@ def crossover(statistics):
 
 # ---- what a variable is worth ------------------------------------------------------------------------------
 
-def ballasted(designs, scenario, total_mass_kg, model=Model()):
+def ballasted(designs: Design, scenario: Scenario, total_mass_kg, *, model: Model = Model()) -> Design:
     """Designs brought to a total mass by their chassis, so that a variable can be judged at equal mass.
 
     Parameters
@@ -172,7 +172,7 @@ def ballasted(designs, scenario, total_mass_kg, model=Model()):
     return dataclasses.replace(designs, chassis_mass_kg=light.chassis_mass_kg + extra)
 
 
-def swapped(front, **changes):
+def swapped(front: Front, **changes: float) -> pd.DataFrame:
     """Every design of a front with a variable changed and the mass made up in the chassis.
 
     If no objective moves, nothing in the search holds that variable where it is.
@@ -193,7 +193,7 @@ def swapped(front, **changes):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)     # the ballast may be a chassis outside the class
         changed = dataclasses.replace(front.designs, **changes)
-        new = evaluate(ballasted(changed, front.scenario, old.total_mass_kg, front.model), front.scenario,
+        new = evaluate(ballasted(changed, front.scenario, old.total_mass_kg, model=front.model), front.scenario,
                        model=front.model)
     return pd.DataFrame(dict(
         total_mass_kg=old.total_mass_kg, **{f"old_{name}": getattr(front.designs, name) for name in changes},
@@ -201,7 +201,7 @@ def swapped(front, **changes):
         slope_change_deg=new.slope_capability_deg - old.slope_capability_deg))
 
 
-def dominated(front, others):
+def dominated(front: Front, others: Iterable[Front]) -> np.ndarray:
     """Which designs of a front are dominated by a design of other fronts, in the front's own objectives.
 
     Parameters
@@ -220,7 +220,7 @@ def dominated(front, others):
 
 # ---- scenario families -------------------------------------------------------------------------------------
 
-def family(name, count, seed=0):
+def family(name: str, count: int, seed: int = 0) -> list[Scenario]:
     """Scenarios spread over a canonical scenario's family: latitude, duration and slope vary together.
 
     A Latin hypercube over the ranges of the paper's Table 1; everything else stays as catalogued, the panel
@@ -262,8 +262,9 @@ def family(name, count, seed=0):
 
 # ---- what drives a result ----------------------------------------------------------------------------------
 
-def sobol(scenario, metrics=("range_km", "total_mass_kg", "slope_capability_deg"), design=None, count=1024,
-          seed=0, bounds=None, model=Model()):
+def sobol(scenario: Scenario, *, metrics=("range_km", "total_mass_kg", "slope_capability_deg"),
+          design: Design | None = None, count: int = 1024, seed: int = 0, bounds: dict | None = None,
+          model: Model = Model()) -> pd.DataFrame:
     """Sobol indices of metrics: the share of their variance that each input explains.
 
     Over the design variables, uniform in the design space; or, when a design is given, over the uncertain
@@ -293,16 +294,14 @@ def sobol(scenario, metrics=("range_km", "total_mass_kg", "slope_capability_deg"
     ----------
     Saltelli et al. (2010), doi:10.1016/j.cpc.2009.09.018, as implemented by scipy.stats.sobol_indices.
     """
-    from scipy.special import ndtri
     from scipy.stats import qmc, sobol_indices
     count = int(check("count", count, 2, whole=True, scalar=True))
     if count & (count - 1):
         raise ValueError(f"count must be a power of 2; got {count}")
-    unknown = [name for name in metrics if name not in METRICS]
-    if unknown:
-        raise ValueError(f"metrics: no Performance field {unknown[0]!r}; choose from {', '.join(METRICS)}")
-    table = catalog.rows("uncertainties.csv") if design is not None else []
-    names = [row["name"] for row in table] if design is not None else list(DESIGN_SPACE)
+    for name in metrics:
+        if name not in METRICS:
+            raise unknown("metrics: no Performance field", name, METRICS)
+    names = list(DESIGN_SPACE) if design is None else uncertain_names()
     random = np.random.default_rng(seed)
     # two samples of the unit cube, and the first with one column after the other taken from the second
     A, B = np.hsplit(qmc.Sobol(2 * len(names), rng=random).random(count), 2)
@@ -311,12 +310,7 @@ def sobol(scenario, metrics=("range_km", "total_mass_kg", "slope_capability_deg"
     if design is None:
         result = evaluate(decode(cube, bounds), scenario, model=model)
     else:
-        changes = {}
-        for row, u in zip(table, cube.T):
-            low, high = float(row["low"]), float(row["high"])
-            share = u if row["distribution"] == "uniform" else 0.5 + ndtri(u) / ndtri(0.95) / 2
-            changes[row["name"]] = perturbed(row, scenario, model, low + (high - low) * share)
-        *changed, model = replaced(design, scenario, model, changes)
+        *changed, model = replaced(design, scenario, model, inputs_at(cube, scenario, model=model))
         result = evaluate(*changed, model=model)
     values = np.stack([np.asarray(getattr(result, name), float) for name in metrics])
     f_A, f_B, *f_AB = np.split(values, len(names) + 2, axis=1)
@@ -333,46 +327,3 @@ def sobol(scenario, metrics=("range_km", "total_mass_kg", "slope_capability_deg"
         dict(metric=metric, input=name, first_order=first[m, i], total_order=total[m, i], total_low=low[m, i],
              total_high=high[m, i])
         for m, metric in enumerate(metrics) for i, name in enumerate(names)])
-
-
-def interval_coverage(draws=500, seed=0, level=0.9, experiments=("ding-2011", "hurrell-2025")):
-    """Whether measured pulls fall inside the intervals that the table of uncertainties gives single wheels.
-
-    Each measured point is predicted with the uncertain soil parameters and shear scale of
-    `data/uncertainties.csv` around its own soil; the rows on masses and power do not act on a wheel.
-
-    Parameters
-    ----------
-    draws : int
-    seed : int
-    level : float
-        Probability that an interval should hold, 0 to 1.
-    experiments : sequence of str
-        Tests of `data/single_wheel.csv`; by default those inside the kernel's regime.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a point: experiment, wheel, slip, measured_n, nominal_n, low_n, high_n, inside.
-    """
-    level = check("level", level, above=0, below=1, scalar=True)
-    points = catalog.table("single_wheel.csv")
-    points = points[points.experiment.isin(list(experiments))].reset_index(drop=True)
-    if points.empty:
-        raise ValueError(f"experiments: no points of {experiments!r} in single_wheel.csv")
-    wheel, soils, load, slip = single_wheel_conditions(points)
-    mission = dataclasses.replace(catalog.scenario("equatorial_mare_traverse"), soil=soils)  # for its soil
-    model, random, changes = Model(), np.random.default_rng(seed), {}
-    table = [row for row in catalog.rows("uncertainties.csv")
-             if row["record"] == "soil" or row["name"] == "shear_scale"]
-    for row in table:
-        changes[row["name"]] = perturbed(row, mission, model, drawn(row, draws, random)[:, None])
-    scale = changes.pop("shear_scale")
-    soils_drawn = dataclasses.replace(soils, **changes)
-    pulls = wheel_forces(wheel, soils_drawn, load, slip, shear_scale=scale).drawbar_pull_n
-    low, high = np.nanquantile(pulls, [(1 - level) / 2, (1 + level) / 2], axis=0)
-    measured = points.drawbar_pull_n.to_numpy(float)
-    return pd.DataFrame(dict(
-        experiment=points.experiment, wheel=points.wheel, slip=slip, measured_n=measured,
-        nominal_n=wheel_forces(wheel, soils, load, slip).drawbar_pull_n, low_n=low, high_n=high,
-        inside=(measured >= low) & (measured <= high)))

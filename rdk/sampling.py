@@ -6,16 +6,16 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
-from . import catalog
 from ._fields import Shown, check, unknown
 from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import Performance, evaluate
 from .terramechanics import Soil
+from .uncertainty import DRAWS, uncertain_inputs
 
-_NORMAL_95 = 1.6448536269514722                          # 95 % point of the standard normal
 METRICS = tuple(f.name for f in dataclasses.fields(Performance) if f.name not in ("mass", "log"))
 """The Performance fields that a study can use as objective, constraint or read-out."""
 READINGS = ("range_km", "total_mass_kg", "slope_capability_deg", "slip", "energy_balance_pct")   # of a short table
@@ -59,11 +59,6 @@ def random_designs(count: int, seed: int | None = None, bounds: dict | None = No
     -------
     Design
         Arrays of length `count`.
-
-    Raises
-    ------
-    ValueError
-        If `count` is not a whole number of 1 or more, or a bound is not sensible.
 
     Examples
     --------
@@ -187,12 +182,6 @@ def sweep(design: Design, scenario: Scenario, over: dict, *, model: Model = Mode
     -------
     Sweep
 
-    Raises
-    ------
-    ValueError
-        If a field is unknown, its values are not one-dimensional, their number is not one or two, or design, scenario
-        or model holds arrays.
-
     Examples
     --------
     >>> import rdk
@@ -218,89 +207,116 @@ def sweep(design: Design, scenario: Scenario, over: dict, *, model: Model = Mode
 
 # ---- uncertainty ----------------------------------------------------------------------------------------------
 
-@dataclasses.dataclass(frozen=True)
-class Intervals:
-    """Monte-Carlo intervals of every metric.
+ATOM = 0.01                                              # share of draws with one value that makes it an atom
+
+
+class _Read(Mapping):
+    """One read-out of every metric of some Intervals, computed when first asked for."""
+
+    def __init__(self, intervals, which):
+        self.intervals, self.which = intervals, which
+
+    def __getitem__(self, name):
+        return self.intervals.ends(name)[self.which]
+
+    def __iter__(self):
+        return iter(METRICS)
+
+    def __len__(self):
+        return len(METRICS)
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Intervals(Shown):
+    """Monte-Carlo intervals of every metric, each computed when first asked for.
 
     Attributes
     ----------
     level : float
         Probability between `low` and `high`.
-    nominal, low, median, high : dict of str to float or ndarray
+    nominal, low, median, high : mapping of str to float or ndarray
         By metric, with the shape of the design; true/false metrics as the share of draws in which they hold.
+    clamped : mapping of str to (bool, bool)
+        Whether the low and the high end are a clamp or stand beside an atom: at least 1 % of the draws share the value
+        of the end, or the least (the largest) value of all - a limit of the model or of the mission, a stall at 0. A
+        share of draws then says more than the end.
+    performance : Performance
+        Of the nominal inputs.
     draws : Performance
         All draws, shape (draws, ...).
     """
     level: float
-    nominal: dict
-    low: dict
-    median: dict
-    high: dict
-    draws: Performance = dataclasses.field(repr=False)
+    performance: Performance
+    draws: Performance
+    _found: dict = dataclasses.field(default_factory=dict)
+
+    nominal = property(lambda self: _Read(self, 0))
+    low = property(lambda self: _Read(self, 1))
+    median = property(lambda self: _Read(self, 2))
+    high = property(lambda self: _Read(self, 3))
+    clamped = property(lambda self: _Read(self, 4))
+
+    @property
+    def error(self) -> float:
+        """Monte-Carlo error: standard deviation of the share of draws beyond an end, at most (independent draws)."""
+        tail = (1 - self.level) / 2
+        return math.sqrt(tail * (1 - tail) / len(self.draws))
+
+    def ends(self, name: str) -> tuple:
+        """Nominal, low end, median, high end of a metric, and which of the ends are clamps."""
+        if name not in METRICS:
+            raise KeyError(str(unknown("no Performance field", name, METRICS)))
+        if name not in self._found:
+            self._found[name] = getattr(self.performance, name), *self._quantiles(getattr(self.draws, name))
+        return self._found[name]
+
+    def _quantiles(self, values):
+        tail, missing = (1 - self.level) / 2, np.isnan(values)
+        if values.dtype == bool:
+            return *[values.mean(0)[()]] * 3, (False, False)
+        if missing.all():
+            return *[np.full(values.shape[1:], np.nan)[()]] * 3, (False, False)
+        # no interpolation between infinities: a speed without a limit, downhill
+        method = "closest_observation" if np.isinf(values).any() else "linear"
+        quantile = np.nanquantile if missing.any() else np.quantile
+        low, median, high = quantile(values, [tail, 0.5, 1 - tail], axis=0, method=method)
+
+        def atom(value):                                 # clamps differ by rounding; infinities equal each other
+            near = np.isclose(values, value, rtol=1e-9, atol=0)
+            return near.mean(0) >= ATOM
+
+        least, most = np.where(missing, np.inf, values).min(0), np.where(missing, -np.inf, values).max(0)
+        return low, median, high, tuple(((low < high) & (atom(end) | atom(extreme)))[()]
+                                        for end, extreme in ((low, least), (high, most)))
+
+    def share(self, wanted) -> float | np.ndarray:
+        """Joint share of draws in which *all* demands hold, such as [("range_km", ">=", 30)]; by design."""
+        holds = np.ones(self.draws.shape, bool)
+        for name, sign, limit in demands(wanted, "demands"):
+            value = getattr(self.draws, name)
+            holds &= value >= limit if sign == ">=" else value <= limit     # NaN holds nothing
+        return holds.mean(0)[()]
 
     def to_frame(self):
-        """A pandas DataFrame: one row a metric (one design only)."""
+        """A pandas DataFrame: one row a metric (one design only); `clamped` names the ends that are."""
         import pandas as pd
-        return pd.DataFrame({"nominal": self.nominal, "low": self.low, "median": self.median, "high": self.high})
+        ends = np.array(["low", "high"])
+        rows = [(*self.ends(name)[:4], " ".join(ends[list(self.clamped[name])])) for name in METRICS]
+        return pd.DataFrame(rows, METRICS, ["nominal", "low", "median", "high", "clamped"])
+
+    def _summary(self):
+        import pandas as pd
+        heading = (f"{100 * self.level:g} % intervals of {len(self.draws)} draws; the share beyond an end is known to "
+                   f"{100 * self.error:.1f} points")
+        if self.draws.shape[1:]:
+            return heading, pd.DataFrame({f"{name} {end}": getattr(self, end)[name] for name in READINGS[:3]
+                                          for end in ("low", "high")})
+        return heading, self.to_frame().loc[list(READINGS)]
 
 
-def uncertain_inputs(scenario, draws=500, seed=0, model=Model(), table=None):
-    """Random soils and model coefficients from the table of uncertainties.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        Its soil is perturbed.
-    draws : int
-    seed : int
-    model : Model
-        Its coefficients are perturbed.
-    table : list of dict, optional
-        Rows like those of `data/uncertainties.csv`: field name; kind, "factor" (times the nominal value) or "offset"
-        (added to it); distribution, "normal" with `low` and `high` its 5 % and 95 % points, or "uniform" between them;
-        `minimum` and `maximum`, where a normal's tail is cut to stay physical.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Field names of Soil and Model with `draws` values each, to pass to `replaced`.
-
-    Raises
-    ------
-    ValueError
-        If `draws` is not a whole number of 1 or more, or a row of the table names what does not exist.
-    """
-    draws = int(check("draws", draws, 1, whole=True, scalar=True))
-    random = np.random.default_rng(seed)
-    changes = {}
-    for row in catalog.rows("uncertainties.csv") if table is None else table:
-        name = row["name"]
-        if row["kind"] not in ("factor", "offset") or row["distribution"] not in ("normal", "uniform"):
-            raise ValueError(f"table: {name} must be a factor or offset, normal or uniform; got {row['kind']!r}, "
-                             f"{row['distribution']!r}")
-        if name not in scenario.soil.numbers() and name not in model.numbers():
-            raise ValueError(f"table: no field {name!r} in Soil or Model")
-        changes[row["name"]] = perturbed(row, scenario, model, drawn(row, draws, random))
-    return changes
-
-
-def drawn(row, draws, random):
-    """Raw draws of one row of the table: factors, or offsets in the unit of the field."""
-    low, high = float(row["low"]), float(row["high"])
-    if row["distribution"] == "uniform":
-        return random.uniform(low, high, draws)
-    return (low + high) / 2 + (high - low) / 2 / _NORMAL_95 * random.standard_normal(draws)
-
-
-def perturbed(row, scenario, model, drawn):
-    """Values of the uncertain field that a row of the table names, from raw draws: applied to the nominal, then cut."""
-    nominal = {**model.numbers(), **scenario.soil.numbers()}[row["name"]]
-    value = nominal * drawn if row["kind"] == "factor" else nominal + drawn
-    return np.clip(value, float(row["minimum"] or -math.inf), float(row["maximum"] or math.inf))
-
-
-def intervals(design, scenario, draws=500, seed=0, level=0.9, model=Model(), table=None):
-    """Intervals of every metric by Monte-Carlo through the physics: soil, shear scale, mass and power coefficients.
+def intervals(design: Design, scenario: Scenario, *, draws: int = DRAWS, seed: int = 0, level: float = 0.9,
+              model: Model = Model(), table: list | None = None) -> Intervals:
+    """Intervals of every metric by Monte-Carlo through the physics: soil, wheel model, hub, mass, power.
 
     Parameters
     ----------
@@ -317,7 +333,7 @@ def intervals(design, scenario, draws=500, seed=0, level=0.9, model=Model(), tab
     model : Model
         Nominal coefficients.
     table : list of dict, optional
-        In place of `data/uncertainties.csv`; see `uncertain_inputs`.
+        In place of `data/uncertainties.csv`; see `inputs_at`.
 
     Returns
     -------
@@ -325,8 +341,8 @@ def intervals(design, scenario, draws=500, seed=0, level=0.9, model=Model(), tab
 
     Notes
     -----
-    The draws are independent and cover the inputs only, not what the models leave out. Metrics that are NaN in a draw
-    (a buried wheel) are left out of its percentiles.
+    The inputs are independent, and they are what the table names: not what the models leave out. Metrics that are NaN
+    in a draw (a buried wheel) are left out of its percentiles.
 
     Examples
     --------
@@ -334,31 +350,19 @@ def intervals(design, scenario, draws=500, seed=0, level=0.9, model=Model(), tab
     >>> found = intervals(rdk.rover("Rashid-1"), rdk.scenario("equatorial_mare_traverse"))
     >>> bool(found.low["total_mass_kg"] < found.nominal["total_mass_kg"] < found.high["total_mass_kg"])
     True
+    >>> bool(0 < found.share([("range_km", ">=", 30), ("slope_capability_deg", ">=", 15)]) < 1)
+    True
     """
     level = check("level", level, above=0, below=1, scalar=True)
     if scenario.shape or model.shape or len(design.shape) > 1:
         raise ValueError("intervals takes one design or a flat population, a single scenario and a single model; got "
                          f"shapes {design.shape}, {scenario.shape} and {model.shape}")
-    changes = uncertain_inputs(scenario, draws, seed, model, table)
+    changes = uncertain_inputs(scenario, draws=draws, seed=seed, model=model, table=table)
     if not changes:
         raise ValueError("table must hold at least one row; got none")
     across = {name: value.reshape(-1, *(1 for _ in design.shape)) for name, value in changes.items()}
-    *drawn_records, drawn_model = replaced(design, scenario, model, across)
-    cloud, nominal = evaluate(*drawn_records, model=drawn_model), evaluate(design, scenario, model=model)
-    tail = (1 - level) / 2
-    low, median, high = {}, {}, {}
-    for name in METRICS:
-        values = getattr(cloud, name)
-        if values.dtype == bool:
-            low[name] = median[name] = high[name] = values.mean(0)[()]
-        elif np.isnan(values).all():
-            low[name] = median[name] = high[name] = np.full(design.shape, np.nan)[()]
-        else:
-            quantile = np.nanquantile if np.isnan(values).any() else np.quantile
-            # no interpolation between infinities: a speed without a limit, downhill
-            method = "closest_observation" if np.isinf(values).any() else "linear"
-            low[name], median[name], high[name] = quantile(values, [tail, 0.5, 1 - tail], axis=0, method=method)
-    return Intervals(level, {name: getattr(nominal, name) for name in METRICS}, low, median, high, cloud)
+    *changed, drawn = replaced(design, scenario, model, across)
+    return Intervals(level, evaluate(design, scenario, model=model), evaluate(*changed, model=drawn))
 
 
 # ---- attribution ----------------------------------------------------------------------------------------------
@@ -407,11 +411,6 @@ def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: 
     -------
     Attribution
         For every metric that is a number in all mixtures; true/false metrics count as 1 and 0.
-
-    Raises
-    ------
-    ValueError
-        If an input holds arrays.
 
     Examples
     --------

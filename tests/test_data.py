@@ -13,7 +13,7 @@ import rdk
 DATA = Path(__file__).parents[1] / "data"
 ROWS = {"soils.csv": 11, "scenarios.csv": 14, "rovers.csv": 13, "flown.csv": 2, "single_wheel.csv": 27,
         "constants.csv": 67, "paper_targets.csv": 69, "studies.csv": 4,
-        "uncertainties.csv": 17, "skyline_sites.csv": 48, "skylines.csv": 360, "published_light.csv": 6,
+        "single_wheel_more.csv": 47, "uncertainties.csv": 20, "skyline_sites.csv": 48, "skylines.csv": 360, "published_light.csv": 6,
         "subsolar_points.csv": 21, "sun_horizons_2024.csv": 96, "ridge_route.csv": 136,
         "ridge_route_skylines.csv": 180, "ridge_light_2026.csv": 61, "slope_histograms.csv": 45}
 UNITS = {"_deg": "deg", "_kn_m_n1": "kN/m^(n+1)", "_kn_m_n2": "kN/m^(n+2)", "_kpa": "kPa", "_mm": "mm",
@@ -126,7 +126,7 @@ def test_every_value_has_its_type_and_is_allowed(name, column):
 
 
 def test_every_source_is_in_the_bibliography():
-    assert len(set(BIBLIOGRAPHY)) == len(BIBLIOGRAPHY) == 108
+    assert len(set(BIBLIOGRAPHY)) == len(BIBLIOGRAPHY) == 110
     for name in PATTERNS:                                # their sources stand above their columns
         section = (DATA / "README.md").read_text(encoding="utf-8").partition(f"\n## {name}\n")[2].partition("\n|")[0]
         named = re.findall(r"`(\w+)`", section.partition("Sources")[2])
@@ -158,10 +158,10 @@ def test_rows_agree_with_themselves():
         assert (row["in_class"] == "True") == (5 <= float(row["published_mass_kg"]) <= 50)
         if row["use"] == "design vector":
             assert row["wheelbase_m"] and row["peak_wheel_torque_nm"]
-    for row in TABLES["rovers.csv"] + TABLES["single_wheel.csv"]:
+    for row in TABLES["rovers.csv"] + TABLES["single_wheel.csv"] + TABLES["single_wheel_more.csv"]:
         height = row.get("grouser_height_m") or row["grouser_height_mm"]
         assert (float(height) == 0) == (row["grouser_count"] == "0")
-    for row in TABLES["single_wheel.csv"]:
+    for row in TABLES["single_wheel.csv"] + TABLES["single_wheel_more.csv"]:
         assert (row["wheel"] == "smooth") == (row["grouser_count"] == "0")
     for row in TABLES["flown.csv"]:
         for value in ("traverse_{}_m", "peak_solar_{}_w"):
@@ -212,13 +212,17 @@ def test_studies_and_uncertainties_speak_of_what_exists():
     for row in TABLES["uncertainties.csv"]:
         record = getattr(rdk, row["record"].title())
         assert row["name"] in {field.name for field in dataclasses.fields(record)}
-        low, high, unchanged = float(row["low"]), float(row["high"]), {"factor": 1, "offset": 0}[row["kind"]]
-        assert low < high and low <= unchanged <= high
+        low, high, unchanged = float(row["low"]), float(row["high"]), {"factor": 1, "offset": 0}.get(row["kind"], 0)
+        assert low < high and (low <= unchanged <= high or row["kind"] == "value")
         # a cut at the nominal value of any soil would move the middle of the interval
         cut = [float(row[end] or fallback) for end, fallback in (("minimum", "-inf"), ("maximum", "inf"))]
         records = map(rdk.soil, rdk.soil_names()) if row["record"] == "soil" else [rdk.Model()]
         assert all(cut[0] <= getattr(record, row["name"]) < cut[1] for record in records)
         assert row["note"], "says where the bounds come from, or that they are judgement"
+    for name in {row["name"] for row in TABLES["uncertainties.csv"]}:
+        rows = [row for row in TABLES["uncertainties.csv"] if row["name"] == name]
+        for condition in {row["when"] for row in rows if row["when"]} or {""}:       # alternatives
+            assert sum(float(row["weight"] or 1) for row in rows if row["when"] in ("", condition)) == 1, name
 
 
 def test_model_defaults_are_the_constants_of_the_table():

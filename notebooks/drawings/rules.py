@@ -263,7 +263,7 @@ def pull_intervals(points):
     Parameters
     ----------
     points : pandas.DataFrame
-        From `rdk.rules.interval_coverage`.
+        From `rdk.uncertainty.interval_coverage`.
 
     Returns
     -------

@@ -361,7 +361,7 @@ class Explorer:
         grid = np.asarray(getattr(sweep(design, scenario, over, model=self.model).performance, metric), float)
         if len(fields) == 2:
             return pictures.contour(figure, fields, metric, values, grid, here, places and (*places, names))
-        draws = {n: v[:, None] for n, v in uncertain_inputs(scenario, 60, model=self.model).items()}
+        draws = {n: v[:, None] for n, v in uncertain_inputs(scenario, draws=60, model=self.model).items()}
         knots = values[0][::2]                           # half the work, and the eye sees no difference
         *changed, model = replaced(design, scenario, self.model, {**draws, fields[0]: knots})
         cloud = evaluate(*changed, model=model)

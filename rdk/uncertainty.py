@@ -1,0 +1,166 @@
+"""What is not known: random soils and model coefficients from the table of uncertainties, `data/uncertainties.csv`."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from . import catalog
+from ._fields import check, unknown
+from .design import Model, Scenario
+from .terramechanics import Soil, Wheel, wheel_forces
+
+DRAWS = 1024
+"""Draws of an interval by default: the share beyond its ends then hardly depends on the seed."""
+
+
+def uncertain_inputs(scenario: Scenario, *, draws: int = DRAWS, seed: int = 0, model: Model = Model(),
+                     table: list | None = None) -> dict[str, np.ndarray]:
+    """Random soils and model coefficients from the table of uncertainties.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its soil is perturbed.
+    draws : int
+        1 or more: the first points of a scrambled Sobol sequence, its columns shuffled among the inputs.
+    seed : int
+        Same seed, same bits.
+    model : Model
+        Its coefficients are perturbed.
+    table : list of dict, optional
+        Rows like those of `data/uncertainties.csv`; see `inputs_at`.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Field names of Soil and Model with `draws` values each, to pass to `replaced`.
+    """
+    from scipy.stats import qmc
+    draws = int(check("draws", draws, 1, whole=True, scalar=True))
+    random = np.random.default_rng(seed)
+    names = uncertain_names(table)
+    points = qmc.Sobol(max(len(names), 1), rng=random).random_base2(math.ceil(math.log2(draws)))[:draws]
+    # the sequence's late columns are its worst: shuffled, no input always has them
+    return inputs_at(points[:, random.permutation(points.shape[1])], scenario, model=model, table=table)
+
+
+def uncertain_names(table: list | None = None) -> list[str]:
+    """The inputs that a table of uncertainties names, in order."""
+    return list(dict.fromkeys(row["name"] for row in (catalog.rows("uncertainties.csv") if table is None else table)))
+
+
+def inputs_at(points: np.ndarray, scenario: Scenario, *, model: Model = Model(), table: list | None = None) -> dict:
+    """Uncertain inputs at points of the unit cube, each coordinate taken through the distribution of one input.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, k)
+        One column for each of `uncertain_names(table)`.
+    scenario : Scenario
+    model : Model
+    table : list of dict, optional
+        Rows with `name`; `kind`, "factor" (times the nominal value), "offset" (added to it) or "value" (in its place);
+        `distribution`, "normal" or "lognormal" with `low` and `high` its 5 % and 95 % points, or "uniform" between
+        them; `minimum` and `maximum`, where a tail is cut to stay physical. Rows of one name are a mixture with the
+        shares `weight`; a row counts only `when` its condition holds, "from=35" or "below=35" of the nominal value, or
+        "kernel=paper" of the model.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Values of shape (n,), by name.
+    """
+    nominal, changes = {**model.numbers(), **scenario.soil.numbers()}, {}
+    table = catalog.rows("uncertainties.csv") if table is None else table
+    for name, u in zip(uncertain_names(table), np.asarray(points, float).T):
+        if name not in nominal:
+            raise unknown("table: Soil and Model have no field", name, list(nominal))
+        rows = [row for row in table if row["name"] == name and _counts(row, nominal[name], model)]
+        weight = np.array([float(row.get("weight") or 1) for row in rows])
+        edges = np.cumsum(weight) / weight.sum() if rows else weight
+        which, value = np.searchsorted(edges[:-1], u, side="right"), np.full(len(u), float(nominal[name]))
+        for i, row in enumerate(rows):
+            own = which == i
+            value[own] = _quantile(row, (u[own] - edges[i]) * weight.sum() / weight[i] + 1, nominal[name])
+        changes[name] = value
+    return changes
+
+
+def _counts(row, nominal, model):
+    """Whether a row's condition holds."""
+    what, _, limit = (row.get("when") or "").partition("=")
+    if what not in ("", "from", "below", "kernel"):
+        raise ValueError(f"table: when of {row['name']} must be empty or from=, below= or kernel=; got {row['when']!r}")
+    return (not what or what == "from" and nominal >= float(limit) or what == "below" and nominal < float(limit)
+            or what == "kernel" and model.kernel == limit)
+
+
+def _quantile(row, u, nominal):
+    """Values of a row at the shares u of its distribution."""
+    from scipy.special import ndtri
+    kind, shape = row["kind"], row["distribution"]
+    if kind not in ("factor", "offset", "value") or shape not in ("normal", "lognormal", "uniform"):
+        raise ValueError(f"table: {row['name']} must be a factor, offset or value, normal, lognormal or uniform; got "
+                         f"{kind!r}, {shape!r}")
+    ends = np.array([float(row["low"]), float(row["high"])])
+    if shape == "lognormal":
+        check(f"table: low and high of {row['name']}", ends, above=0)
+        ends = np.log(ends)
+    u = np.clip(u, 2.0**-32, 1 - 2.0**-32)               # a scrambled sequence can hold 0
+    drawn = ends[0] + np.diff(ends) * (u if shape == "uniform" else 0.5 + ndtri(u) / ndtri(0.95) / 2)
+    drawn = np.exp(drawn) if shape == "lognormal" else drawn
+    value = {"factor": nominal * drawn, "offset": nominal + drawn, "value": drawn}[kind]
+    return np.clip(value, float(row["minimum"] or -math.inf), float(row["maximum"] or math.inf))
+
+
+def interval_coverage(*, draws: int = DRAWS, seed: int = 0, level: float = 0.9, spread: float | None = None,
+                      experiments: tuple = ()):
+    """Whether measured pulls lie in the intervals that the shear scale alone gives driven single wheels.
+
+    The soil of a laboratory is given, so the shear scale carries the error of the wheel model; what is not known of
+    the soil of a lunar site comes on top of it. Its spread was set on these five experiments, each with the same
+    weight: to judge it, set it without one of them and ask for that one.
+
+    Parameters
+    ----------
+    draws, seed : int
+    level : float
+        Probability that an interval should hold, 0 to 1.
+    spread : float, optional
+        Standard deviation of the logarithm of the shear scale, in place of that of `data/uncertainties.csv`.
+    experiments : sequence of str
+        Tests of `single_wheel.csv` and `single_wheel_more.csv`; by default all.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a point of positive slip: experiment, wheel, slip, load_n, measured_n, nominal_n, low_n, high_n,
+        inside, and shear_scale, the factor with which the kernel meets the point.
+    """
+    import pandas as pd
+    level = check("level", level, above=0, below=1, scalar=True)
+    points = pd.concat([catalog.table("single_wheel.csv").merge(catalog.table("soils.csv"), on="soil"),
+                        catalog.table("single_wheel_more.csv")]).query("slip > 0").reset_index(drop=True)
+    for name in experiments:
+        if name not in set(points.experiment):
+            raise unknown("experiments: no single-wheel test", name, list(points.experiment.unique()))
+    if experiments:
+        points = points[points.experiment.isin(list(experiments))].reset_index(drop=True)
+    conditions = (Wheel(points.wheel_radius_mm / 1000, points.wheel_width_mm / 1000, points.grouser_height_mm / 1000,
+                        points.grouser_count), Soil(**{f: points[f] for f in catalog.soil("fjs-1").numbers()}),
+                  points.vertical_load_n, points.slip)
+    table = [row for row in catalog.rows("uncertainties.csv") if row["name"] == "shear_scale"]
+    if spread is not None:
+        end = 1.6448536 * check("spread", spread, above=0, scalar=True)
+        table = [table[0] | {"distribution": "lognormal", "low": np.exp(-end), "high": np.exp(end)}]
+    (scale,) = uncertain_inputs(catalog.scenario("mare_micro"), draws=draws, seed=seed, table=table).values()
+    low, high = np.quantile(wheel_forces(*conditions, shear_scale=scale[:, None]).drawbar_pull_n,
+                            [(1 - level) / 2, (1 + level) / 2], axis=0)
+    tried = np.geomspace(0.2, 5, 200)                    # pull rises with the scale
+    pulls, measured = wheel_forces(*conditions, shear_scale=tried[:, None]).drawbar_pull_n, points.drawbar_pull_n
+    return pd.DataFrame({
+        "experiment": points.experiment, "wheel": points.wheel, "slip": points.slip, "load_n": points.vertical_load_n,
+        "measured_n": measured, "nominal_n": wheel_forces(*conditions).drawbar_pull_n, "low_n": low, "high_n": high,
+        "inside": (measured >= low) & (measured <= high),
+        "shear_scale": [np.exp(np.interp(m, pull, np.log(tried))) for m, pull in zip(measured, pulls.T)]})
