@@ -96,7 +96,8 @@ def decode(genes: np.ndarray, bounds: dict | None = None) -> Design:
     values = {}
     for (name, variable), gene, a, b in zip(DESIGN_SPACE.items(), np.asarray(genes, float).T, low, high):
         if variable.kind == "choice":
-            values[name] = np.where(a + gene * (b - a) < (variable.low + variable.high) / 2, variable.low, variable.high)
+            middle = (variable.low + variable.high) / 2
+            values[name] = np.where(a + gene * (b - a) < middle, variable.low, variable.high)
         else:
             value = np.clip(a + gene * (b - a), a, b)
             values[name] = np.rint(value) if variable.kind == "whole" else value
@@ -395,9 +396,9 @@ class Attribution(Shown):
 def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: Model = Model()) -> Attribution:
     """Exact Shapley values of each metric's difference between two designs, over the eleven design variables.
 
-    Every mixture of the two designs is evaluated, 2^k of them in one call where k variables differ, and each variable is
-    credited with its mean marginal effect over all orders in which the variables could change (Shapley 1953). A variable
-    with one value in both designs has no effect and no share.
+    Every mixture of the two designs is evaluated, 2^k of them in one call where k variables differ, and each variable
+    is credited with its mean marginal effect over all orders in which the variables could change (Shapley 1953). A
+    variable with one value in both designs has no effect and no share.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 import rdk
 from rdk import _contact as contact
-from rdk import catalog, rediscovery, rules, tradespace, validation
+from rdk import catalog, rediscovery, rules, tradespace
 import ledger
 
 searches = ledger
