@@ -5,28 +5,37 @@
 >>> result.feasible
 True
 """
-from . import mass, power, sky, terramechanics, thermal
+from . import catalog, mass, power, sky, terramechanics, thermal
 from .catalog import rover, rover_names, scenario, scenario_names, skyline, skyline_sites, soil, soil_names
-from .design import DESIGN_SPACE, Design, Model, Scenario
+from ._fields import unknown as _unknown
+from .design import DESIGN_SPACE, Design, Model, Problem, Scenario
 from .mission import Performance, evaluate
 from .terramechanics import Soil, Wheel
 
-_LAZY = {"random_designs": "sampling", "sweep": "sampling", "pareto_front": "tradespace",
-         "intervals": "sampling", "attribution": "sampling", "fronts": "studies",
-         "Explorer": "explorer", "write_report": "report",
-         "report": None, "tradespace": None, "validation": None, "figures": None, "explorer": None,
-         "route": None, "terrain": None}
+__version__ = "0.1.0"
 
-__all__ = ["DESIGN_SPACE", "Design", "Model", "Performance", "Scenario", "Soil", "Wheel", "evaluate", "mass", "power",
-           "rover", "rover_names", "scenario", "scenario_names", "sky", "skyline", "skyline_sites", "soil",
-           "soil_names", "terramechanics", "thermal",
-           *_LAZY]
+_LAZY = {name: module for module, names in {
+    "sampling": ("random_designs", "sweep", "Sweep", "intervals", "Intervals", "attribution", "Attribution"),
+    "tradespace": ("pareto_front", "Front"), "studies": ("fronts",), "explorer": ("Explorer",),
+    "report": ("write_report",),
+    None: ("explain", "explorer", "figures", "rediscovery", "report", "route", "rules", "sampling", "stability",
+           "studies", "terrain", "tradespace", "validation")}.items() for name in names}
+
+__all__ = [
+    "DESIGN_SPACE", "Design", "Model", "Performance", "Problem", "Scenario", "Soil", "Wheel", "catalog", "evaluate", "mass",
+    "power", "rover", "rover_names", "scenario", "scenario_names", "sky", "skyline", "skyline_sites", "soil", "soil_names",
+    "terramechanics", "thermal", *_LAZY]
+
+
+def __dir__():
+    """What tab completion offers: the lazy names too."""
+    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])
 
 
 def __getattr__(name):
     """Load what needs pymoo, matplotlib or ipywidgets when it is first asked for."""
     if name not in _LAZY:
-        raise AttributeError(f"module 'rdk' has no attribute {name!r}")
+        raise AttributeError(str(_unknown("module 'rdk' has no attribute", name, sorted(__all__))))
     from importlib import import_module
     module = import_module("." + (_LAZY[name] or name), __name__)
     return getattr(module, name) if _LAZY[name] else module

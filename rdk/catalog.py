@@ -1,26 +1,31 @@
-"""The collection's data: soils, scenarios, rovers and measurements from `data/`, read strictly.
+"""The collection's data from `data/`, and designs and missions as files, both read strictly.
 
 `data/README.md` is the dictionary of every column; each row names its source.
 """
-from __future__ import annotations
-
 import csv
 import dataclasses
 import functools
+import io
+import json
+import math
+import re
 from pathlib import Path
 
-from ._fields import unknown
-from .design import Design, Scenario, Problem
+import numpy as np
+
+from ._fields import Record, require, together, unknown
+from .design import DESIGN_SPACE, Design, Problem, Scenario
 from .sky import Skyline
 from .terramechanics import Soil
 
-DATA = Path(__file__).resolve().parent.parent / "data"
+_HERE = Path(__file__).resolve().parent
+DATA = _HERE / "data" if (_HERE / "data").is_dir() else _HERE.parent / "data"     # in a built wheel, in a clone
 _SOIL = ("sinkage_exponent", "cohesive_modulus_kn_m_n1", "frictional_modulus_kn_m_n2", "cohesion_kpa",
          "friction_angle_deg", "shear_modulus_mm")
 _SCENARIO = ("latitude_deg", "duration_earth_days", "slope_deg", "duty_cycle", "traverse_limit_km", "payload_mass_kg",
              "payload_power_w")
-_DESIGN = ("wheel_radius_m", "wheel_width_m", "grouser_height_m", "grouser_count", "wheel_count", "chassis_mass_kg",
-           "wheelbase_m", "solar_area_m2", "battery_capacity_wh", "avionics_power_w", "peak_wheel_torque_nm")
+_ALIASES = {"n_wheels": "wheel_count"}                   # in the front files of the original release
+_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _KEYS = {"soils.csv": ("soil",), "scenarios.csv": ("scenario", "kind", "soil"),
          "rovers.csv": ("rover", "use"), "studies.csv": ("scenario",)}
 
@@ -32,8 +37,9 @@ def _rows(file_name, folder):
         with open(path, encoding="utf-8", newline="") as file:
             lines = list(csv.reader(file, strict=True))
     except FileNotFoundError:
-        raise FileNotFoundError(f"{file_name} is missing from {folder}; the data folder comes with the repository: "
-                                "install from a clone with 'pip install -e .'") from None
+        raise FileNotFoundError(f"{file_name} is missing from {folder}; the data folder comes with the package "
+                                "and with its repository: install rdk anew, or from a clone with 'pip install -e .'"
+                                ) from None
     except (UnicodeDecodeError, csv.Error) as error:
         raise ValueError(f"{file_name} is damaged: {error}") from None
     if len(lines) < 2:
@@ -48,7 +54,7 @@ def _rows(file_name, folder):
     return tuple(dict(zip(lines[0], line)) for line in lines[1:])
 
 
-def rows(file_name):
+def rows(file_name: str) -> list[dict]:
     """The rows of a file in `data/`, as dictionaries of strings.
 
     Raises
@@ -66,12 +72,19 @@ def table(file_name):
     return pd.read_csv(DATA / file_name, keep_default_na=False, na_values=[""])
 
 
+def _float(text):
+    """A plain decimal number; what else Python takes for one (5_0, nan, digits of other scripts) is refused."""
+    if not _NUMBER.fullmatch(text.strip()):
+        raise ValueError(f"{text!r} is not a number")
+    return float(text)
+
+
 def _read(kind, row, names, file_name, label, **more):
     """A `kind` (Soil, Scenario or Design) from the named numbers of a row; errors name file and row."""
     values = {}
     for name in names:
         try:
-            values[name] = float(row[name])
+            values[name] = _float(row[name])
         except KeyError:
             raise ValueError(f"{file_name} is damaged: no column {name!r}") from None
         except ValueError:
@@ -85,7 +98,7 @@ def _read(kind, row, names, file_name, label, **more):
 def _pick(file_name, kind, key, name):
     found = {row[key]: row for row in _rows(file_name, DATA)}
     if name not in found:
-        raise ValueError(f"no {kind} {name!r}; choose from {', '.join(found)}")
+        raise unknown(f"no {kind}", name, found)
     return found[name]
 
 
@@ -93,25 +106,25 @@ def _names(file_name, key):
     return tuple(dict.fromkeys(row[key] for row in _rows(file_name, DATA)))
 
 
-def soil_names():
+def soil_names() -> tuple[str, ...]:
     """Names that `soil` knows."""
     return _names("soils.csv", "soil")
 
 
-def scenario_names(kind=None):
+def scenario_names(kind: str | None = None) -> tuple[str, ...]:
     """Names that `scenario` knows; `kind` is "canonical", "class-generic" or "rover mission"."""
     kinds = _names("scenarios.csv", "kind")
     if kind is not None and kind not in kinds:
-        raise ValueError(f"no kind {kind!r} of scenario; choose from {', '.join(kinds)}")
+        raise unknown("no kind of scenario", kind, kinds)
     return tuple(row["scenario"] for row in _rows("scenarios.csv", DATA) if kind in (None, row["kind"]))
 
 
-def rover_names():
+def rover_names() -> tuple[str, ...]:
     """Names that `rover` knows: the rovers with a full design vector."""
     return tuple(row["rover"] for row in _rows("rovers.csv", DATA) if row["use"] == "design vector")
 
 
-def soil(name):
+def soil(name: str) -> Soil:
     """A catalogued Soil.
 
     Parameters
@@ -132,7 +145,7 @@ def soil(name):
     return _read(Soil, _pick("soils.csv", "soil", "soil", name), _SOIL, "soils.csv", name, name=name)
 
 
-def scenario(name):
+def scenario(name: str) -> Scenario:
     """A catalogued Scenario, its panel tilted by min(80, |latitude|) degrees towards the noon sun.
 
     Parameters
@@ -159,7 +172,7 @@ def scenario(name):
                                panel_azimuth_deg=0.0 if flat.latitude_deg < 0 else 180.0)
 
 
-def problem(name):
+def problem(name: str) -> Problem:
     """How the paper poses a scenario to the optimiser, from `data/studies.csv`; the defaults where it does not."""
     for row in _rows("studies.csv", DATA):
         if row["scenario"] == name:
@@ -177,7 +190,7 @@ def problem(name):
         raise ValueError(f"studies.csv is damaged: row of {name!r}: {error}") from None
 
 
-def rover(name):
+def rover(name: str) -> Design:
     """The design of a published rover; fields that its sources leave open are imputed (see `data/rovers.csv`).
 
     Parameters
@@ -195,14 +208,14 @@ def rover(name):
     >>> rover("Rashid-1").wheel_radius_m
     0.1
     """
-    return _read(Design, rover_row(name), _DESIGN, "rovers.csv", name)
+    return _read(Design, rover_row(name), tuple(DESIGN_SPACE), "rovers.csv", name)
 
 
-def rover_row(name):
+def rover_row(name: str) -> dict:
     """The full row of a published rover's design vector: published mass, payload, sources."""
     vectors = {row["rover"]: row for row in _rows("rovers.csv", DATA) if row["use"] == "design vector"}
     if name not in vectors:
-        raise ValueError(f"no rover {name!r}; choose from {', '.join(vectors)}")
+        raise unknown("no rover", name, vectors)
     return dict(vectors[name])
 
 
@@ -249,3 +262,181 @@ def skyline(site, height_m=2):
     return Skyline([float(row["azimuth_deg"]) for row in rows], [float(row[f"{site}_{height_m:g}m"]) for row in rows],
                    sites[site]["latitude_deg"], sites[site]["longitude_deg"], float(height_m),
                    f"{site}, {height_m:g} m")
+
+
+# ---- designs and missions as files ------------------------------------------------------------------------------
+
+def to_json(design: Design, scenario: Scenario | None = None) -> str:
+    """JSON text of a design (or of the designs of a front) and, if given, its mission and how that is posed.
+
+    Parameters
+    ----------
+    design : Design
+        One, or a flat population.
+    scenario : Scenario, optional
+        A single one.
+    """
+    require(design=(design, Design), **{} if scenario is None else {"scenario": (scenario, Scenario)})
+    if len(design.shape) > 1 or scenario is not None and scenario.shape:
+        raise ValueError("to_json keeps one design or a flat population, and a single scenario; got shapes "
+                         f"{design.shape} and {scenario and scenario.shape}")
+    kept = {"format": "rdk-design-1", "design": _plain(design)}
+    return json.dumps(kept | ({} if scenario is None else {"scenario": _plain(scenario)}), indent=1, allow_nan=False)
+
+
+def _plain(value):
+    """What JSON can hold: infinity as a word, unknown numbers left out."""
+    if dataclasses.is_dataclass(value):
+        fields = {f.name: getattr(value, f.name) for f in dataclasses.fields(value)}
+        return {name: _plain(v) for name, v in fields.items() if not (isinstance(v, float) and v != v)}
+    if isinstance(value, dict):
+        return {name: _plain(v) for name, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    if isinstance(value, (np.ndarray, np.generic)):
+        return _plain(value.tolist())
+    return ("Infinity" if value > 0 else "-Infinity") if isinstance(value, float) and math.isinf(value) else value
+
+
+def from_json(text: str) -> tuple[Design, Scenario | None]:
+    """Design and Scenario (or None) from the text of `to_json`.
+
+    Raises
+    ------
+    ValueError
+        If the text is not such a file, a name stands there twice or is unknown, or a value is not allowed.
+    """
+    def once(pairs):
+        for name, _ in pairs:
+            if sum(name == other for other, _ in pairs) > 1:
+                raise ValueError(f"{name!r} stands there twice")
+        return dict(pairs)
+
+    try:
+        kept = json.loads(text.lstrip("\ufeff"), object_pairs_hook=once)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"not a JSON file: {error}") from None
+    if not isinstance(kept, dict) or kept.get("format") != "rdk-design-1" or not isinstance(kept.get("design"), dict):
+        raise ValueError("not a design kept by rdk: it needs 'format': 'rdk-design-1' and a 'design'")
+    for old, name in _ALIASES.items():
+        if old in kept["design"]:
+            if name in kept["design"]:
+                raise ValueError(f"the file's design has both {old!r} and {name!r}")
+            kept["design"][name] = kept["design"].pop(old)
+    design = _design(_fields(Design, kept["design"], "design"))
+    if kept.get("scenario") is None:
+        return design, None
+    values = _fields(Scenario, kept["scenario"], "scenario")
+    try:
+        values["soil"] = Soil(**_fields(Soil, values["soil"], "soil"))
+        if "problem" in values:
+            posed = {name: _number(value) for name, value in _fields(Problem, values["problem"], "problem").items()}
+            demands = tuple((name, sign, _number(limit)) for name, sign, limit in posed.get("constraints", ()))
+            values["problem"] = Problem(**posed | {"constraints": demands})
+        if values.get("skyline") is not None:
+            values["skyline"] = Skyline(**_fields(Skyline, values["skyline"], "skyline"))
+        scenario = Scenario(**values)
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"the file's scenario is damaged: {error!r}") from None
+    if scenario.shape:
+        raise ValueError("the file's scenario must hold single numbers")
+    return design, scenario
+
+
+def _number(value):
+    return float(value) if value in ("Infinity", "-Infinity") else value
+
+
+def _fields(kind, values, where):
+    """The fields of a `kind` from a JSON object; unknown ones are refused."""
+    if not isinstance(values, dict):
+        raise ValueError(f"the file's {where} is damaged: it must be an object; got {values!r:.40}")
+    known = {f.name: f for f in dataclasses.fields(kind)}
+    for name in values:
+        if name not in known:
+            raise unknown(f"the file's {where} has an unknown field", name, known)
+    return {name: _number(value) if known[name].metadata.get("infinite") and isinstance(value, str)
+            else str(value) if name == "name" else value for name, value in values.items()}
+
+
+def to_csv(design: Design, performance: Record | None = None) -> str:
+    """CSV text: one row a lane, the design's variables first, then its performance if given.
+
+    Parameters
+    ----------
+    design : Design
+    performance : Performance, optional
+        Of this design, on one mission or on several: they broadcast.
+    """
+    require(design=(design, Design))
+    columns = design.numbers() | ({} if performance is None else performance.numbers())
+    shape = together(design=design.shape, performance=() if performance is None else performance.shape)
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(name.replace(".", "_") for name in columns)
+    writer.writerows(zip(*(np.broadcast_to(v, shape).ravel().tolist() for v in columns.values())))
+    return file.getvalue()
+
+
+def from_csv(text: str) -> Design:
+    """Design (a flat population; a single design for one row) from CSV text with the eleven variables as columns.
+
+    Columns are separated by commas, or by semicolons or tabs: then decimal commas are read, too. More columns may
+    stand there.
+
+    Raises
+    ------
+    ValueError
+        If a column is missing or stands there twice, or a value is not a number or not allowed.
+    """
+    lines = text.lstrip("\ufeff").lstrip().splitlines(keepends=True)
+    if lines and re.fullmatch(r"sep=.\s*", lines[0]):
+        lines = lines[1:]                                # a spreadsheet's hint
+    separator = max(",;\t", key=lines[0].count) if lines else ","
+    try:
+        header, *rows = (line for line in csv.reader(lines, delimiter=separator, skipinitialspace=True, strict=True)
+                         if any(cell.strip() for cell in line))
+    except csv.Error as error:
+        raise ValueError(f"not a CSV file: {error}") from None
+    except ValueError:
+        header, rows = [], []
+    if not rows:
+        raise ValueError("the CSV file needs a header and at least one row")
+    header = [_ALIASES.get(name.strip(), name.strip()) for name in header]
+    missing = [n for n in DESIGN_SPACE if n not in header]
+    if missing:
+        hint = f"; is its separator a comma, a semicolon or a tab? It begins {lines[0].strip()[:40]!r}"
+        raise ValueError(f"the CSV file lacks the columns {', '.join(missing)}" + hint * (len(header) < 11))
+    for name in header:
+        if name and header.count(name) > 1:
+            raise ValueError(f"the CSV file has the column {name!r} twice")
+    for i, row in enumerate(rows, 1):
+        if len(row) != len(header):
+            raise ValueError(f"row {i} of the CSV file has {len(row)} values, its header {len(header)}"
+                             + "; a decimal comma needs another separator of columns, such as a semicolon"
+                             * (separator == "," and len(row) > len(header)))
+    columns = {name: [cell.strip() for cell in column] for name, column in zip(header, zip(*rows))
+               if name in DESIGN_SPACE}
+    cells = [cell for column in columns.values() for cell in column]
+    if separator != "," and any("," in cell for cell in cells):
+        if any("." in cell for cell in cells):
+            raise ValueError("the CSV file has decimal commas and points: use one decimal separator")
+        columns = {name: [cell.replace(",", ".", 1) for cell in column] for name, column in columns.items()}
+    values = {}
+    for name, column in columns.items():
+        try:
+            values[name] = [_float(cell) for cell in column]
+        except ValueError as error:
+            hint = "; the decimal separator of this file must be a point" * ("," in str(error))
+            raise ValueError(f"{name} must be a number in every row; {error}{hint}") from None
+    return _design(values if len(rows) > 1 else {name: v[0] for name, v in values.items()})
+
+
+def _design(values):
+    missing = [n for n in DESIGN_SPACE if n not in values]
+    if missing:
+        raise ValueError(f"the file's design lacks {', '.join(missing)}")
+    design = Design(**values)
+    if len(design.shape) > 1 or 0 in design.shape:
+        raise ValueError(f"the file must hold one design or a list of some; got shape {design.shape}")
+    return design

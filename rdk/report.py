@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import explain, keep
+from . import catalog, explain
 from .explorer import pictures
 from .design import DESIGN_SPACE, Model
 from .mission import evaluate
@@ -321,6 +321,6 @@ def _small_print(model, draws):
 
 
 def _download(design, scenario):
-    data = base64.b64encode(keep.to_json(design, scenario).encode()).decode()
+    data = base64.b64encode(catalog.to_json(design, scenario).encode()).decode()
     return ('<p class="screen"><a download="design.json" href="data:application/json;base64,' + data
             + '">design.json</a>: load it in the explorer, view “keep”.</p>')

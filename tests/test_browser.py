@@ -11,7 +11,7 @@ from axe_playwright_python.base import AXE_SCRIPT  # noqa: E402
 from playwright.sync_api import expect  # noqa: E402
 
 import rdk  # noqa: E402
-from rdk import keep  # noqa: E402
+from rdk import catalog  # noqa: E402
 from rdk.explorer.controls import MISSION_SPACE, VIEWS  # noqa: E402
 
 if browser.CHROMIUM is None and os.environ.get("CI"):
@@ -240,8 +240,8 @@ def keep_and_load(explorer, tmp_path):
     """Download the design, wander off, load it again."""
     button(explorer, "keep").click()
     kept = download(explorer, "design.json")
-    design, mission = keep.from_json(kept.decode())
-    front = keep.from_csv(download(explorer, "front.csv").decode())
+    design, mission = catalog.from_json(kept.decode())
+    front = catalog.from_csv(download(explorer, "front.csv").decode())
     assert len(front) > 3 and mission.name == "equatorial_mare_traverse"
     (tmp_path / "kept.json").write_bytes(kept)
     (tmp_path / "bad.json").write_bytes(kept[:200])

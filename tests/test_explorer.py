@@ -22,7 +22,7 @@ import numpy as np
 import pytest
 
 import rdk
-from rdk import explain, keep
+from rdk import catalog, explain
 from rdk.explorer import app as explorer_module, pictures
 from rdk.explorer.controls import MISSION_SPACE, OWN, SCRIPTS, VIEWS, Refresher
 from rdk.explorer import Explorer
@@ -672,12 +672,12 @@ def test_a_kept_front_comes_back(explorer, name):
 
 def test_a_front_beyond_the_sliders_is_cut(explorer):
     wide = rdk.random_designs(3, seed=1, bounds={"wheel_radius_m": (0.25, 0.3)})
-    explorer.load("front.csv", keep.to_csv(wide).encode())
+    explorer.load("front.csv", catalog.to_csv(wide).encode())
     assert (explorer.front.designs.wheel_radius_m == 0.2).all() and explorer.design.wheel_radius_m == 0.2
     assert_current(explorer)
 
 
-GOOD = json.loads(keep.to_json(rdk.rover("Rashid-1"), rdk.scenario(MARE)))
+GOOD = json.loads(catalog.to_json(rdk.rover("Rashid-1"), rdk.scenario(MARE)))
 
 
 def damaged(**changes):
@@ -695,12 +695,12 @@ def damaged(**changes):
     ("a.json", damaged(design={**GOOD["design"], "wheel_radius_m": [[0.1, 0.1]]}), "one design or a list"),
     ("a.json", damaged(design={n: [] for n in GOOD["design"]}), "one design or a list"),
     ("a.json", damaged(scenario=3), "scenario is damaged"), ("a.json", damaged(scenario={}), "scenario is damaged"),
-    ("a.json", damaged(scenario={**GOOD["scenario"], "soil": "mud"}), "scenario is damaged"),
+    ("a.json", damaged(scenario={**GOOD["scenario"], "soil": "mud"}), "soil is damaged"),
     ("a.json", damaged(scenario={**GOOD["scenario"], "latitude_deg": 100}), "latitude_deg must be"),
     ("a.json", damaged(scenario={**GOOD["scenario"], "latitude_deg": [1, 2]}), "must hold single numbers"),
     ("a.csv", b"", "needs a header and at least one row"), ("a.csv", b"a,b\n1,2\n", "lacks the columns wheel_radius_m"),
-    ("a.csv", keep.to_csv(rdk.rover("Rashid-1")).encode().replace(b"0.1,", b"x,", 1), "wheel_radius_m must be a number"),
-    ("a.csv", keep.to_csv(rdk.rover("Rashid-1")).encode() + b"0.1,0.2\n", "must be a number in every row"),
+    ("a.csv", catalog.to_csv(rdk.rover("Rashid-1")).encode().replace(b"0.1,", b"x,", 1), "wheel_radius_m must be a number"),
+    ("a.csv", catalog.to_csv(rdk.rover("Rashid-1")).encode() + b"0.1,0.2\n", "row 2 of the CSV file has 2 values"),
     ("a.CSV", b'"' + b"x" * 200_000, "not a CSV file"), ("<b>.json", b"{", "&lt;b&gt;.json was not loaded")])
 def test_a_damaged_file_is_refused_in_words(explorer, name, content, words):
     before = explorer.design, explorer.scenario

@@ -15,7 +15,7 @@ import pytest
 import rdk
 import exercises as course
 from rdk import _contact as contact
-from rdk import catalog, design, explain, keep, mass, mission, power, report, sampling
+from rdk import catalog, design, explain, mass, mission, power, report, sampling
 from rdk import terramechanics, thermal, tradespace, validation
 
 REPO = Path(__file__).parents[1]
@@ -26,7 +26,7 @@ RECORDS = {"Design": rdk.Design, "Scenario": rdk.Scenario, "Problem": design.Pro
            "Wheel": rdk.Wheel,
            "Model": rdk.Model, "Performance": rdk.Performance, "MassBreakdown": mass.MassBreakdown,
            "TraverseLog": mission.TraverseLog, "Front": tradespace.Front}
-MODULES = (catalog, contact, course, course.judging, design, explain, keep, mass, mission, power, report,
+MODULES = (catalog, contact, course, course.judging, design, explain, mass, mission, power, report,
            sampling, terramechanics, thermal, tradespace, validation)
 SUFFIXES = {
     "_m": "m", "_mm": "mm", "_km": "km", "_m2": "m2", "_kg": "kg", "_n": "N", "_nm": "N m", "_pa": "Pa",

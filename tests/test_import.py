@@ -2,6 +2,10 @@
 
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
+
+import rdk
 
 HEAVY = ("pymoo", "matplotlib", "ipywidgets", "IPython", "pandas", "scipy.optimize", "scipy.stats", "pvlib")
 
@@ -43,7 +47,25 @@ missing = [name for name in rdk.__all__ if not hasattr(rdk, name)]
 try:
     rdk.no_such_thing
 except AttributeError as error:
-    print(missing, error)""").strip() == "[] module 'rdk' has no attribute 'no_such_thing'"
+    print(missing, error)""").strip().startswith("[] module 'rdk' has no attribute 'no_such_thing'; ")
+
+
+def test_completion_and_the_nearest_name():
+    assert fresh("""
+import rdk, types
+assert set(rdk.__all__) < set(dir(rdk)) and "_LAZY" not in dir(rdk) and len(set(rdk.__all__)) == len(rdk.__all__)
+import rdk.explorer, rdk.report
+assert isinstance(rdk.explorer, types.ModuleType) and isinstance(rdk.report, types.ModuleType)
+assert callable(rdk.Explorer) and callable(rdk.write_report) and rdk.Front.__name__ == "Front"
+try:
+    rdk.pareto_frnt
+except AttributeError as error:
+    print(error)""").strip().startswith("module 'rdk' has no attribute 'pareto_frnt'; nearest are pareto_front")
+
+
+def test_the_version_is_that_of_the_project():
+    project = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert rdk.__version__ == project["version"]
 
 
 def test_physics_modules_know_nothing_of_designs_missions_or_files():

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import rdk
-from rdk import keep
+from rdk import catalog
 from exercises import capstone
 from rdk.design import Problem
 from rdk.report import Requirement, report, requirements, write
@@ -86,7 +86,7 @@ def test_the_design_is_listed_and_travels_with_the_page(page):
     listed = {cells[0]: cells[1] for _, cells in page.rows if len(cells) == 3}  # the demands have four
     assert listed["wheel radius"] == "0.1 m" and listed["grouser count"] == "14" and len(listed) == 11
     link = next(link for link in page.links if link["download"] == "design.json")
-    design, mission = keep.from_json(base64.b64decode(link["href"].split(",")[1]).decode())
+    design, mission = catalog.from_json(base64.b64decode(link["href"].split(",")[1]).decode())
     assert design == RASHID and replace(mission, problem=MARE.problem) == MARE
     json.loads(base64.b64decode(link["href"].split(",")[1]))
 

@@ -20,7 +20,7 @@ import numpy as np
 from IPython.display import Image
 from traitlets import TraitError
 
-from .. import catalog, explain, keep
+from .. import catalog, explain
 from . import pictures
 from .controls import GOALS, MISSION_SPACE, OWN, START, VIEWS, Controls, Refresher, message, show
 from ..design import DESIGN_SPACE, Design, Model, Scenario, Problem
@@ -457,10 +457,10 @@ class Explorer:
     # ---- files ------------------------------------------------------------------------------------------------
 
     def _show_files(self, design, scenario, result):
-        files = {"design.json": keep.to_json(design, scenario), "design.csv": keep.to_csv(design, result)}
+        files = {"design.json": catalog.to_json(design, scenario), "design.csv": catalog.to_csv(design, result)}
         if self.front is not None and len(self.front):
-            files |= {"front.json": keep.to_json(self.front.designs, self.front.scenario),
-                      "front.csv": keep.to_csv(self.front.designs, self.front.performance)}
+            files |= {"front.json": catalog.to_json(self.front.designs, self.front.scenario),
+                      "front.csv": catalog.to_csv(self.front.designs, self.front.performance)}
         self.controls.links.value = "Download: " + ", ".join(
             f'<a download="{name}" href="data:text/plain;base64,{base64.b64encode(text.encode()).decode()}">{name}</a>'
             for name, text in files.items())
@@ -483,14 +483,14 @@ class Explorer:
         if wanted == "the sweep":
             over = {name: values.tolist() for name, values in self._sweep_values().items()}
             return explain.as_python(design, scenario, self.model, f"curve = rdk.sweep(design, mission, {over!r}, model=model)")
-        return explain.as_python(design, scenario, self.model, "result = rdk.evaluate(design, mission, model)",
+        return explain.as_python(design, scenario, self.model, "result = rdk.evaluate(design, mission, model=model)",
                                  f"intervals = rdk.intervals(design, mission, draws={DRAWS}, model=model)")
 
     def load(self, name, content):
         """Show a design, or a front, from a file's name and bytes; the notice says what was wrong with it."""
         try:
             text = bytes(content).decode("utf-8-sig")
-            design, mission = (keep.from_csv(text), None) if name.lower().endswith(".csv") else keep.from_json(text)
+            design, mission = (catalog.from_csv(text), None) if name.lower().endswith(".csv") else catalog.from_json(text)
         except ValueError as error:                      # also where the bytes are no text
             self.controls.notice.value = message(f"{name} was not loaded: {error}")
             return
