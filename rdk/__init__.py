@@ -6,8 +6,8 @@
 True
 """
 from . import catalog, mass, power, sky, terramechanics, thermal
-from .catalog import rover, rover_names, scenario, scenario_names, skyline, skyline_sites, soil, soil_names
 from ._fields import unknown as _unknown
+from .catalog import rover, rover_names, scenario, scenario_names, skyline, skyline_sites, soil, soil_names
 from .design import DESIGN_SPACE, Design, Model, Problem, Scenario
 from .mission import Performance, evaluate
 from .terramechanics import Soil, Wheel
@@ -22,9 +22,9 @@ _LAZY = {name: module for module, names in {
            "studies", "terrain", "tradespace", "validation")}.items() for name in names}
 
 __all__ = [
-    "DESIGN_SPACE", "Design", "Model", "Performance", "Problem", "Scenario", "Soil", "Wheel", "catalog", "evaluate", "mass",
-    "power", "rover", "rover_names", "scenario", "scenario_names", "sky", "skyline", "skyline_sites", "soil", "soil_names",
-    "terramechanics", "thermal", *_LAZY]
+    "DESIGN_SPACE", "Design", "Model", "Performance", "Problem", "Scenario", "Soil", "Wheel", "catalog", "evaluate",
+    "mass", "power", "rover", "rover_names", "scenario", "scenario_names", "sky", "skyline", "skyline_sites", "soil",
+    "soil_names", "terramechanics", "thermal", *_LAZY]
 
 
 def __dir__():

@@ -76,7 +76,8 @@ def test_table_is_the_file_as_a_frame():
     (lambda: rdk.soil(""), "no soil ''; choose from fjs-1"),
     (lambda: rdk.soil(None), "no soil None; choose from fjs-1"),
     (lambda: rdk.scenario("mare"), "no scenario 'mare'; nearest are .*mare_micro"),
-    (lambda: rdk.rover("Sojourner"), "no rover 'Sojourner'; .*Rashid-1|no rover 'Sojourner'; nearest"),     # mass check only
+    (lambda: rdk.rover("Sojourner"),
+     "no rover 'Sojourner'; .*Rashid-1|no rover 'Sojourner'; nearest"),     # mass check only
     (lambda: rdk.rover("rashid-1"), "no rover 'rashid-1'; nearest are .*Rashid-1"),
     (lambda: rdk.scenario_names("arctic"),
      "no kind of scenario 'arctic'; choose from canonical, class-generic, "),
@@ -211,7 +212,8 @@ REFUSED_TABLES = [
     ("", "needs a header"), (HEADER, "needs a header"), ("\ufeff", "needs a header"),
     (TEXT.replace("0.1,", "-0.1,", 1), "wheel_radius_m must be positive and finite; got -0.1")]
 REFUSED_TABLES += [(TEXT.replace("50.0,", f"{number},", 1), "battery_capacity_wh must be a number in every row")
-                   for number in ("5_0.0", "nan", "inf", "-Infinity", "0x32", "\u0665\u0660", "5 0", "True", "", "1e", ".")]
+                   for number in ("5_0.0", "nan", "inf", "-Infinity", "0x32",
+                                      "\u0665\u0660", "5 0", "True", "", "1e", ".")]
 
 
 @pytest.mark.parametrize("text, message", REFUSED_TABLES, ids=range(len(REFUSED_TABLES)))
@@ -246,7 +248,8 @@ def strict(text):
 ODD = "it's=inf, \"Ba$$in\"\n<b>\u00e9\u0665</b> {x} \\"
 MISSIONS = [MARE, rdk.scenario("highland_slope_capability"), MARE.replace(traverse_limit_km=math.inf),
             MARE.replace(name=ODD, soil=MARE.soil.replace(name=ODD)), MARE.replace(maximum_speed_m_s=0.05),
-            MARE.replace(start_utc="2026-11-26T12:00", longitude_deg=12.5, skyline=rdk.skyline("connecting_ridge_spot_1")),
+            MARE.replace(start_utc="2026-11-26T12:00", longitude_deg=12.5,
+            skyline=rdk.skyline("connecting_ridge_spot_1")),
             MARE.replace(skyline=[0.0, 1.0, -2.0]),
             MARE.replace(problem=rdk.Problem({"range_km": "max", "total_mass_kg": "min"},
                                              (("slope_capability_deg", ">=", 20.0), ("arrival_h", "<=", math.inf)),
@@ -285,11 +288,14 @@ REFUSED_FILES = [
     (GOOD.replace('"wheel_width_m"', '"wheel_radius_m"'), "'wheel_radius_m' stands there twice"),
     (GOOD.replace('"latitude_deg"', '"slope_deg"'), "'slope_deg' stands there twice"),
     (GOOD.replace('"wheelbase_m"', '"n_wheels"'), "both 'n_wheels' and 'wheel_count'"),
-    (GOOD.replace('"panel_tilt_deg"', '"panel_tild_deg"'), "scenario has an unknown field 'panel_tild_deg'; nearest are panel_tilt"),
+    (GOOD.replace('"panel_tilt_deg"', '"panel_tild_deg"'),
+     "scenario has an unknown field 'panel_tild_deg'; nearest are panel_tilt"),
     (GOOD.replace('"cohesion_kpa"', '"cohesion"'), "soil has an unknown field 'cohesion'; nearest are .*cohesion_kpa"),
-    (GOOD.replace('"wheel_radius_m": 0.1', '"wheel_radius_m": NaN'), "wheel_radius_m must be positive and finite; got nan"),
+    (GOOD.replace('"wheel_radius_m": 0.1', '"wheel_radius_m": NaN'),
+     "wheel_radius_m must be positive and finite; got nan"),
     (GOOD.replace('"wheel_radius_m": 0.1', '"wheel_radius_m": "Infinity"'), "wheel_radius_m must be positive"),
-    (GOOD.replace('"wheel_radius_m": 0.1', '"wheel_radius_m": "0.1"'), "wheel_radius_m must be positive and finite; got '0.1'"),
+    (GOOD.replace('"wheel_radius_m": 0.1', '"wheel_radius_m": "0.1"'),
+     "wheel_radius_m must be positive and finite; got '0.1'"),
     (GOOD.replace('"wheel_radius_m": 0.1', '"wheel_radius_m": [[1], [2, 3]]'), "wheel_radius_m must be positive"),
     (GOOD.replace('"duty_cycle": 0.3', '"duty_cycle": "Infinity"'), "duty_cycle must be"),
     (GOOD.replace('"duty_cycle": 0.3', '"duty_cycle": [0.3, 0.4]'), "must hold single numbers"),
