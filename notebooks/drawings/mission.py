@@ -159,7 +159,7 @@ def mass_shares(shares):
     ax.set(xlabel="share of the predicted mass (%)", xlim=(0, 100.5))
     ax.invert_yaxis()
     ax.grid(axis="y", visible=False)
-    figure.legend(loc="outside upper center", ncols=3, fontsize=8.5)
+    figure.legend(loc="outside upper center", ncols=3, fontsize=8.5, frameon=False)
     return figure
 
 
@@ -183,7 +183,7 @@ def mass_errors(masses, median_pct):
            ylabel="error of the predicted mass (%)")
     ax.set_xticks([5, 10, 20, 50, 100, 200], ["5", "10", "20", "50", "100", "200"])
     ax.minorticks_off()
-    ax.legend(fontsize=9)
+    ax.legend(fontsize=9, frameon=False)
     return figure
 
 
@@ -201,7 +201,7 @@ def peak_solar(flown):
                ylim=(0, 1.1 * max(row.clean_peak_high_w, row.published_high_w)),
                ylabel="peak solar power (W)")
         ax.grid(axis="x", visible=False)
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=9)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=9, frameon=False)
     return figure
 
 
