@@ -3,8 +3,6 @@
 Errors are signed, in percent of what was measured or published: positive where the model is above it. Every table is
 computed when asked for, from the files in `data/`; nothing here is fitted to them.
 """
-from __future__ import annotations
-
 import dataclasses
 import warnings
 
@@ -16,7 +14,7 @@ from ._fields import check
 from .design import Model
 from .mass import mass_breakdown
 from .mission import MASS_COEFFICIENTS, evaluate
-from .terramechanics import Soil, Wheel, wheel_forces
+from .terramechanics import OPTIONS, Soil, Wheel, wheel_forces
 
 
 def error_pct(model, reference):
@@ -41,55 +39,56 @@ EXPERIMENTS = {"ding": "ding-2011", "hurrell": "hurrell-2025", "wang": "wang-han
 """The experiments behind the paper's medians, by their short names."""
 
 
-def single_wheel_conditions(points=None):
-    """Wheel, soil, load and slip of single-wheel tests, ready for `wheel_forces(*conditions)`.
+def single_wheel_conditions(points: pd.DataFrame | None = None) -> tuple[Wheel, Soil, np.ndarray, np.ndarray]:
+    """Wheel, soil, load (N) and slip of single-wheel tests, one lane a row, ready for `wheel_forces(*conditions)`.
 
     Parameters
     ----------
     points : pandas.DataFrame, optional
-        Rows of `single_wheel.csv`; all of them by default.
-
-    Returns
-    -------
-    Wheel, Soil, ndarray, ndarray
-        One lane a row; load in N, slip as a ratio.
+        Rows of `single_wheel.csv` (all of them by default) or of `single_wheel_more.csv`, which bring their soil.
     """
     points = catalog.table("single_wheel.csv") if points is None else points
     wheel = Wheel(points.wheel_radius_mm / 1000, points.wheel_width_mm / 1000, points.grouser_height_mm / 1000,
                   points.grouser_count)
-    soils = {name: catalog.soil(name).numbers() for name in points.soil.unique()}
-    soil = Soil(**{field: [soils[name][field] for name in points.soil] for field in next(iter(soils.values()))})
+    if "sinkage_exponent" in points:
+        soil = Soil(**{name: points[name] for name in catalog.soil("apollo-nominal").numbers()})
+    else:
+        soils = {name: catalog.soil(name).numbers() for name in points.soil.unique()}
+        soil = Soil(**{field: [soils[name][field] for name in points.soil] for field in next(iter(soils.values()))})
     return wheel, soil, points.vertical_load_n.to_numpy(float), points.slip.to_numpy(float)
 
 
-def _forces(conditions, kernel):
+def _forces(conditions, options):
     """The kernel's answer in the units of the measurements."""
-    forces = wheel_forces(*conditions, **kernel)
+    forces = wheel_forces(*conditions, **options)
     return {"drawbar_pull_n": forces.drawbar_pull_n, "sinkage_mm": 1000 * forces.sinkage_m,
             "torque_nm": forces.torque_nm}
 
 
-def single_wheel(**kernel):
-    """Model against measurement at every point of the single-wheel tests.
+def single_wheel(points: pd.DataFrame | None = None, **options) -> pd.DataFrame:
+    """Model against measurement at every point of the single-wheel tests, by one call of `wheel_forces`.
 
     Parameters
     ----------
-    **kernel : float
-        Options of `wheel_forces`, such as `shear_scale`.
+    points : pandas.DataFrame, optional
+        As in `single_wheel_conditions`.
+    **options
+        Of `wheel_forces`, such as `kernel` or `shear_scale`.
 
     Returns
     -------
     pandas.DataFrame
         One row a point: experiment, wheel, soil, vertical_load_n, slip, and for each of drawbar_pull_n, sinkage_mm and
         torque_nm the measured value, the model's (`model_...`) and the signed error in percent (`..._error_pct`; NaN
-        where nothing, or zero, was measured). One call of `wheel_forces` computes them all.
+        where nothing, or zero, was measured).
     """
-    points = catalog.table("single_wheel.csv")
-    model = _forces(single_wheel_conditions(points), kernel)
-    table = points[["experiment", "wheel", "soil", "vertical_load_n", "slip"]].copy()
+    points = catalog.table("single_wheel.csv") if points is None else points
+    model = _forces(single_wheel_conditions(points), options)
+    table = points.reindex(columns=["experiment", "wheel", "soil", "vertical_load_n", "slip"])
     for quantity in QUANTITIES:
-        table[quantity], table["model_" + quantity] = points[quantity], model[quantity]
-        table[_stem(quantity) + "_error_pct"] = error_pct(model[quantity], points[quantity])
+        table[quantity] = points[quantity] if quantity in points else np.nan
+        table["model_" + quantity] = model[quantity]
+        table[_stem(quantity) + "_error_pct"] = error_pct(model[quantity], table[quantity])
     return table
 
 
@@ -98,7 +97,7 @@ def _stem(quantity):
     return quantity.rpartition("_")[0]
 
 
-def single_wheel_summary(points=None):
+def single_wheel_summary(points: pd.DataFrame | None = None, **options) -> pd.DataFrame:
     """What the errors of the single-wheel tests come to, per experiment and quantity.
 
     The paper's medians are those of |error| in percent over all points of an experiment, both wheels together, the
@@ -107,7 +106,7 @@ def single_wheel_summary(points=None):
     Parameters
     ----------
     points : pandas.DataFrame, optional
-        As returned by `single_wheel`, or some of its rows.
+        As returned by `single_wheel`, or some of its rows; by default all of them, with these options.
 
     Returns
     -------
@@ -116,7 +115,7 @@ def single_wheel_summary(points=None):
         over_predicted (how many points), largest_abs_error_pct, median_abs_error and its unit, and
         median_abs_error_of_load_pct (pull only: error in percent of the load).
     """
-    points = single_wheel() if points is None else points
+    points = single_wheel(**options) if points is None else points
     rows = []
     for experiment, group in points.groupby("experiment", sort=False):
         for quantity, unit in QUANTITIES.items():
@@ -134,107 +133,111 @@ def single_wheel_summary(points=None):
     return table[table.points > 0].reset_index(drop=True)
 
 
-def single_wheel_curves(slip, **kernel):
-    """The kernel's curves through the single-wheel tests.
+def grouser_doubt(height_mm: tuple = (20.0, 15.0), **options) -> pd.DataFrame:
+    """Medians of |error| of the Rashid-1 wheel test with grousers of either height that its source is cited for.
 
-    Parameters
-    ----------
-    slip : array_like, shape (n,)
-        Slip ratios.
-    **kernel : float
-        Options of `wheel_forces`.
+    Returns one row a height: grouser_height_mm, and the median |error| in percent of drawbar_pull and sinkage.
+    """
+    points = catalog.table("single_wheel.csv").query(f"experiment == {EXPERIMENTS['hurrell']!r}")
+    rows = []
+    for height in np.atleast_1d(check("height_mm", height_mm, 0)):
+        errors = single_wheel(points.assign(grouser_height_mm=height), **options)
+        rows.append(dict(grouser_height_mm=height, drawbar_pull=errors.drawbar_pull_error_pct.abs().median(),
+                         sinkage=errors.sinkage_error_pct.abs().median()))
+    return pd.DataFrame(rows)
 
-    Returns
-    -------
-    pandas.DataFrame
-        One row a test (experiment and wheel) and slip: experiment, wheel, soil, slip, model_drawbar_pull_n,
-        model_sinkage_mm, model_torque_nm.
+
+def single_wheel_curves(slip, **options) -> pd.DataFrame:
+    """The kernel's curves through the single-wheel tests, at slips of shape (n,), with options of `wheel_forces`.
+
+    Returns one row a test (experiment and wheel) and slip: experiment, wheel, soil, slip, model_drawbar_pull_n,
+    model_sinkage_mm, model_torque_nm.
     """
     tests = catalog.table("single_wheel.csv").drop_duplicates(["experiment", "wheel"])
     slip = np.atleast_1d(check("slip", slip, -1, 1))
     lanes = tests.loc[tests.index.repeat(len(slip))].assign(slip=np.tile(slip, len(tests))).reset_index(drop=True)
-    model = _forces(single_wheel_conditions(lanes), kernel)
+    model = _forces(single_wheel_conditions(lanes), options)
     return lanes[["experiment", "wheel", "soil", "slip"]].assign(**{"model_" + q: model[q] for q in QUANTITIES})
 
 
-def bootstrap_medians(reading_error_n=0.5, reading_error_m=1e-3, reading_error_nm=0.1, *, resample_points=False,
-                      samples=2000, seed=0):
+def bootstrap_medians(reading_error_n: float = 0.5, reading_error_m: float = 1e-3, reading_error_nm: float = 0.1, *,
+                      resample_points: bool = False, samples: int = 2000, seed: int | None = 0,
+                      **options) -> pd.DataFrame:
     """What an error in reading the points off printed figures does to the medians of |error|.
 
     Every measured value is read again `samples` times with a normal error; the model stays as it is. That is a
-    parametric bootstrap. With `resample_points`, each sample also draws its points with replacement: what another
-    choice of points could have given.
+    parametric bootstrap. With `resample_points`, each sample also draws what was measured: curves (a wheel each) of an
+    experiment with replacement, and points of a drawn curve with replacement, since points of one curve share its wheel
+    and its soil. An experiment of one or two curves shows little of what others would have given.
 
     Parameters
     ----------
     reading_error_n, reading_error_m, reading_error_nm : float
         Standard deviation of the reading of drawbar pull (N), sinkage (m) and torque (N m), zero or more.
     resample_points : bool
-        Draw the points of an experiment with replacement as well.
+        Draw curves and their points with replacement as well.
     samples : int
         How many, 1 or more.
     seed : int, optional
         Same seed, same table.
+    **options
+        Of `wheel_forces`.
 
     Returns
     -------
     pandas.DataFrame
         One row an experiment and quantity: points, median_abs_error_pct as printed, and low_pct, median_pct, high_pct:
         the 5, 50 and 95 % points of that median over the samples.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of range.
     """
     sigma = dict(zip(QUANTITIES, (check("reading_error_n", reading_error_n, 0, scalar=True),
                                   1000 * check("reading_error_m", reading_error_m, 0, scalar=True),
                                   check("reading_error_nm", reading_error_nm, 0, scalar=True))))
     samples = int(check("samples", samples, 1, whole=True, scalar=True))
-    rng, points, rows = np.random.default_rng(seed), single_wheel(), []
+    rng, points, rows = np.random.default_rng(seed), single_wheel(**options), []
     for experiment, group in points.groupby("experiment", sort=False):
         for quantity, spread in sigma.items():
-            group_known = group[group[_stem(quantity) + "_error_pct"].notna()]
-            if group_known.empty:
+            known = group[group[_stem(quantity) + "_error_pct"].notna()]
+            if known.empty:
                 continue
-            measured, model = (group_known[name].to_numpy() for name in (quantity, "model_" + quantity))
+            measured, model = (known[name].to_numpy() for name in (quantity, "model_" + quantity))
             read = measured + spread * rng.standard_normal((samples, len(measured)))
             error = abs(error_pct(model, read))
             if resample_points:
-                error = np.take_along_axis(error, rng.integers(0, len(measured), error.shape), 1)
-            low, median, high = np.percentile(np.median(error, 1), [5, 50, 95])
+                error = np.take_along_axis(error, drawn(known.wheel.to_numpy(), samples, rng), 1)
+            low, median, high = np.nanpercentile(np.nanmedian(error, 1), [5, 50, 95])
             rows.append(dict(experiment=experiment, quantity=_stem(quantity), points=len(measured),
                              median_abs_error_pct=np.median(abs(error_pct(model, measured))), low_pct=low,
                              median_pct=median, high_pct=high))
     return pd.DataFrame(rows)
 
 
-def pull_shift(shear_scale=(0.70, 0.85, 1.15, 1.30)):
-    """How far the pull of the tested wheels moves when the kernel's shear stress is scaled.
+def drawn(curve, samples, rng):
+    """Numbers of points, (samples, points): curves drawn with replacement, then points of the curve drawn."""
+    curves = [np.flatnonzero(curve == name) for name in dict.fromkeys(curve)]
+    size = max(map(len, curves))
+    picked = rng.integers(len(curves), size=(samples, len(curves)))
+    members, length = np.array([np.resize(one, size) for one in curves]), np.array([len(one) for one in curves])
+    within = (rng.random((samples, len(curves), size)) * length[picked][..., None]).astype(int)
+    return members[picked[..., None], within].reshape(samples, -1)
+
+
+def pull_shift(shear_scale=(0.70, 0.85, 1.15, 1.30), **options) -> pd.DataFrame:
+    """How far the pull of the tested wheels moves when the kernel's shear stress is scaled by factors of shape (n,).
 
     Taken over the points of the paper's three experiments with positive slip and positive nominal pull, as its
-    robustness study does.
-
-    Parameters
-    ----------
-    shear_scale : array_like, shape (n,)
-        Factors on the shear stress, positive.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a factor: shear_scale, median_shift_pct (of |DP(scale) / DP - 1|), points.
+    robustness study does. Returns one row a factor: shear_scale, median_shift_pct (of |DP(scale) / DP - 1|), points.
     """
     scale = np.atleast_1d(check("shear_scale", shear_scale, above=0))
     points = catalog.table("single_wheel.csv")
     conditions = single_wheel_conditions(points[points.experiment.isin(EXPERIMENTS.values())])
-    pull = wheel_forces(*conditions, shear_scale=np.append(1.0, scale)[:, None]).drawbar_pull_n
+    pull = wheel_forces(*conditions, shear_scale=np.append(1.0, scale)[:, None], **options).drawbar_pull_n
     used = (conditions[3] > 0) & (pull[0] > 0)
     shift = 100 * abs(pull[1:, used] / pull[0, used] - 1)
     return pd.DataFrame(dict(shear_scale=scale, median_shift_pct=np.median(shift, 1), points=int(used.sum())))
 
 
-def load_transfer(design, scenario, height_to_wheelbase=0.4, slope_deg=25.0, slip=0.6, model=Model()):
+def load_transfer(design, scenario, *, height_to_wheelbase=0.4, slope_deg=25.0, slip=0.6,
+                  model: Model = Model()) -> float | np.ndarray:
     """Change of a rover's total pull when a slope shifts weight to the lower axle at fixed total mass.
 
     Axles are evenly spaced. On two axles the loads are w (1 +- 2 (h/L) tan(slope)) with w the mean wheel load, on
@@ -267,10 +270,9 @@ def load_transfer(design, scenario, height_to_wheelbase=0.4, slope_deg=25.0, sli
     load = mass * model.gravity_m_s2 * np.cos(slope) / design.wheel_count
     shift = np.where(six, 3.0, 2.0) * ratio * np.tan(slope)
     factors = [np.ones_like(shift), 1 + shift, np.where(shift < 1, 1 - shift, 1.0)]
-    even, lower, upper = (wheel_forces(
-        design.wheel, scenario.soil, load * f, slip, transition_c1=model.transition[0],
-        transition_c2=model.transition[1], grouser_lift_cap=model.grouser_lift_cap,
-        shear_scale=model.shear_scale).drawbar_pull_n for f in factors)
+    options = {name: getattr(model, name) for name in OPTIONS}
+    even, lower, upper = (wheel_forces(design.wheel, scenario.soil, load * f, slip, **options).drawbar_pull_n
+                          for f in factors)
     ends = np.where(six, 1 / 3, 1 / 2)                   # share of the wheels on each end axle
     change = 100 * (ends * (lower + upper - 2 * even)) / even
     return np.where((even > 0) & (shift < 1), change, np.nan)[()]
@@ -299,21 +301,14 @@ def _published(model):
                                   **{name: getattr(model, name) for name in MASS_COEFFICIENTS})
 
 
-def published_masses(model=Model()):
+def published_masses(model: Model = Model()) -> pd.DataFrame:
     """Bottom-up mass against published mass, rover by rover, with the line items.
 
-    Parameters
-    ----------
-    model : Model
-        Its mass coefficients are used, each a single number.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a rover: rover, in_class, wheel_count, published_mass_kg, predicted_mass_kg, error_pct, the line items
-        in kg, peak_wheel_torque_nm (anchored where none is published), and fixed_overhead_kg and fixed_overhead_pct:
-        what does not shrink with the rover (motor and avionics base masses, fixed linkage), grossed up by harness,
-        thermal control and growth, in kg and in percent of the published mass.
+    The mass coefficients of `model` are used, each a single number. Returns one row a rover: rover, in_class,
+    wheel_count, published_mass_kg, predicted_mass_kg, error_pct, the line items in kg, peak_wheel_torque_nm (anchored
+    where none is published), and fixed_overhead_kg and fixed_overhead_pct: what does not shrink with the rover (motor
+    and avionics base masses, fixed linkage), grossed up by harness, thermal control and growth, in kg and in percent of
+    the published mass.
     """
     rovers, mass = _published(model)
     table = rovers[["rover", "in_class", "wheel_count", "published_mass_kg"]].copy()
@@ -330,19 +325,12 @@ def published_masses(model=Model()):
     return table
 
 
-def published_masses_summary(masses=None):
-    """Median and mean |error| of the predicted masses.
+def published_masses_summary(masses: pd.DataFrame | None = None) -> pd.DataFrame:
+    """Median and mean |error| of the predicted masses, as returned by `published_masses`.
 
-    Parameters
-    ----------
-    masses : pandas.DataFrame, optional
-        As returned by `published_masses`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Rows "in class" (5 to 50 kg, the paper's figures) and "all": rovers, median_abs_error_pct, mean_abs_error_pct,
-        mean_error_pct (signed), largest_abs_error_pct, and rank_correlation of signed error with published mass.
+    Returns the rows "in class" (5 to 50 kg, the paper's figures) and "all": rovers, median_abs_error_pct,
+    mean_abs_error_pct, mean_error_pct (signed), largest_abs_error_pct, and rank_correlation of signed error with
+    published mass.
     """
     masses = published_masses() if masses is None else masses
     rows = []
@@ -355,21 +343,12 @@ def published_masses_summary(masses=None):
     return pd.DataFrame(rows)
 
 
-def mass_sensitivity(change_pct=20.0, model=Model()):
+def mass_sensitivity(change_pct: float = 20.0, model: Model = Model()) -> pd.DataFrame:
     """What a change of one mass coefficient at a time does to the published-mass table.
 
-    Parameters
-    ----------
-    change_pct : float
-        Relative change of each coefficient, in percent, above -100.
-    model : Model
-        Where the changes start.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a coefficient: coefficient, value, changed_value, median_abs_error_pct over the in-class rovers, and the
-        change of each rover's total in percent, one column a rover.
+    The change is relative, in percent and above -100; `model` is where it starts. Returns one row a coefficient:
+    coefficient, value, changed_value, median_abs_error_pct over the in-class rovers, and the change of each rover's
+    total in percent, one column a rover.
     """
     change = check("change_pct", change_pct, above=-100, scalar=True) / 100
     names = MASS_COEFFICIENTS
@@ -389,18 +368,8 @@ def mass_sensitivity(change_pct=20.0, model=Model()):
 def peak_solar_power_w(panel_area_m2, latitude_deg, cell_efficiency=None, clean_array=True):
     """Noon power of a new horizontal array, by the paper's stack of panel factors.
 
-    Parameters
-    ----------
-    panel_area_m2, latitude_deg : float or ndarray
-    cell_efficiency : float or ndarray, optional
-        `flown_cell_efficiency` of `constants.csv` (0.30) by default.
-    clean_array : bool
-        Count the optical loss of a clean array (0.98).
-
-    Returns
-    -------
-    float or ndarray
-        In W.
+    `cell_efficiency` is `flown_cell_efficiency` of `constants.csv` (0.30) by default; `clean_array` counts the optical
+    loss of a clean array (0.98). Returns W.
     """
     cell = constant("flown_cell_efficiency") if cell_efficiency is None else cell_efficiency
     stack = [constant("flown_" + name) for name in ("packing_factor", "electrical_efficiency", "temperature_derate")]
@@ -408,7 +377,7 @@ def peak_solar_power_w(panel_area_m2, latitude_deg, cell_efficiency=None, clean_
                              dust_factor=constant("flown_clean_array_factor") if clean_array else 1.0)
 
 
-def flown_rovers():
+def flown_rovers() -> pd.DataFrame:
     """Peak solar power, survival of the lunar night and range envelope of the rovers that flew, against record.
 
     The panel lies flat. Power is given with and without the optical loss of a clean array: the paper counts it for

@@ -125,6 +125,51 @@ def test_bootstrap_against_a_loop_written_out():
     assert (wider.high_pct - wider.low_pct > table.high_pct - table.low_pct).all()
 
 
+def test_points_of_a_curve_are_drawn_with_their_curve():
+    curve = np.array(["a"] * 3 + ["b"] * 2)
+    drawn = validation.drawn(curve, 4000, np.random.default_rng(5))
+    halves = curve[drawn].reshape(4000, 2, 3)
+    assert np.all(halves == halves[..., :1]), "three points of one curve, then three of one curve"
+    # a share of 0.5 over 8,000 draws: 0.6 % standard error
+    assert np.mean(halves == "a") == pytest.approx(0.5, abs=0.03)
+    assert set(drawn.ravel()) == set(range(5))
+
+
+def test_the_imposed_arc_halves_the_error_of_sinkage_and_not_that_of_pull():
+    summary = validation.single_wheel_summary(kernel="imposed-arc").set_index(["experiment", "quantity"])
+    sinkage = summary.median_abs_error_pct.xs("sinkage", level="quantity")
+    # half a point on either side of independent code
+    assert sinkage["ding-2011"] == pytest.approx(20.6, abs=0.5)
+    assert sinkage["hurrell-2025"] == pytest.approx(20.4, abs=0.5)
+    driving = validation.single_wheel(kernel="imposed-arc").query("slip > 0")
+    pull = validation.single_wheel_summary(driving).set_index(["experiment", "quantity"]).median_abs_error_of_load_pct
+    assert pull["ding-2011", "drawbar_pull"] == pytest.approx(8.0, abs=0.5)
+    assert pull["hurrell-2025", "drawbar_pull"] == pytest.approx(12.3, abs=0.5)
+    paper_s = validation.single_wheel_summary().set_index(["experiment", "quantity"])
+    assert paper_s.median_abs_error_pct["ding-2011", "sinkage"] > 2 * sinkage["ding-2011"]
+    curves = validation.single_wheel_curves([0.2], kernel="imposed-arc")
+    wider = validation.bootstrap_medians(0, 0, 0, samples=2, kernel="imposed-arc")
+    assert np.allclose(wider.median_pct, summary.median_abs_error_pct) and curves.notna().all(axis=None)
+
+
+def test_the_height_of_rashids_grousers_moves_the_median_of_pull():
+    table = validation.grouser_doubt().set_index("grouser_height_mm")
+    # 24.3 and 19.1 % of pull, 27.5 and 28.3 % of sinkage, by independent code
+    assert_allclose(table.loc[[20, 15]], [[24.3, 27.5], [19.1, 28.3]], atol=0.06)
+
+
+def test_further_wheel_tests_bring_their_soil():
+    further = catalog.table("single_wheel_more.csv")
+    points = validation.single_wheel(further)
+    assert len(points) == 47 and points.sinkage_error_pct.isna().all() and points.torque_nm.isna().all()
+    row, raw = points.loc[3], further.loc[3]
+    wheel = dict(radius_m=0.09, width_m=0.10, grouser_height_m=0.01, grouser_count=36)
+    soil = {name: float(raw[name]) for name in rdk.soil("grc-1").numbers()}
+    forces = scalar.wheel_forces(wheel, soil, 24.5, 0.483, quadrature="gauss")
+    assert_allclose(row.model_drawbar_pull_n, forces["drawbar_pull_n"], rtol=1e-4)       # two quadratures
+    assert row.drawbar_pull_n == 9.79
+
+
 @pytest.mark.parametrize("options",
                          [dict(reading_error_n=-1), dict(reading_error_m=math.nan), dict(samples=0),
                                      dict(samples=1.5)])
@@ -167,11 +212,11 @@ def test_load_transfer_by_moments_written_out():
 
 def test_load_transfer_broadcasts_and_knows_its_limits():
     scenario, rover = rdk.scenario("equatorial_mare_traverse"), rdk.rover("Rashid-1")
-    change = validation.load_transfer(rover, scenario, [0.0, 0.2, 0.4, 1.2])
+    change = validation.load_transfer(rover, scenario, height_to_wheelbase=[0.0, 0.2, 0.4, 1.2])
     assert change[0] == 0 and np.isnan(change[3]), "at 1.2 the upper axle lifts off"
     assert abs(change[1]) < abs(change[2])
     with pytest.raises(ValueError, match="height_to_wheelbase"):
-        validation.load_transfer(rover, scenario, -0.1)
+        validation.load_transfer(rover, scenario, height_to_wheelbase=-0.1)
 
 
 # ---- masses ------------------------------------------------------------------------------------------------
