@@ -13,7 +13,7 @@ import rdk
 DATA = Path(__file__).parents[1] / "data"
 ROWS = {"soils.csv": 11, "scenarios.csv": 14, "rovers.csv": 13, "flown.csv": 2, "single_wheel.csv": 27,
         "constants.csv": 67, "paper_targets.csv": 69, "studies.csv": 4,
-        "single_wheel_more.csv": 47, "uncertainties.csv": 20, "skyline_sites.csv": 48, "skylines.csv": 360, "published_light.csv": 6,
+        "single_wheel_more.csv": 47, "uncertainties.csv": 22, "skyline_sites.csv": 48, "skylines.csv": 360, "published_light.csv": 6,
         "subsolar_points.csv": 21, "sun_horizons_2024.csv": 96, "ridge_route.csv": 136,
         "ridge_route_skylines.csv": 180, "ridge_light_2026.csv": 61, "slope_histograms.csv": 45}
 UNITS = {"_deg": "deg", "_kn_m_n1": "kN/m^(n+1)", "_kn_m_n2": "kN/m^(n+2)", "_kpa": "kPa", "_mm": "mm",
