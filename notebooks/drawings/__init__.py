@@ -22,5 +22,3 @@ from .rules import (  # noqa: F401
     ledger_verdicts, pull_intervals, rediscovery_distances, rocker_bogie_share, sobol_bars,
     variables_on_fronts, verdict)
 from .before_mission import growth, load_transfer, pull_and_demand, speed_limits, stall, step_convergence  # noqa: F401
-from .evidence import (  # noqa: F401
-    day_of_power, efficiency_stack, node_temperatures, panel_incidence, sun_paths)
