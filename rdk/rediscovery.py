@@ -27,7 +27,7 @@ def unit_cube(designs):
 
 
 @dataclasses.dataclass(frozen=True)
-class _Target:
+class Target:
     """A published rover on its class-generic mission with its own payload, and its search's mass ceiling."""
     name: str
     scenario: object
@@ -76,7 +76,7 @@ def rediscover(rovers=tuple(REDISCOVERED), population=60, generations=(16,), see
         is no worse in range, mass and slope capability and better in one), and `nearest`, the design.
     """
     wanted = sorted({int(check("generations", g, 1, whole=True, scalar=True)) for g in generations})
-    targets, seeds = [_Target.of(name) for name in rovers], list(seeds)
+    targets, seeds = [Target.of(name) for name in rovers], list(seeds)
     jobs = [(target.scenario, wanted, dict(population=population, seed=seed, constraints=target.constraints))
             for target in targets for seed in seeds]
     searches = list((map if executor is None else executor.map)(fronts_at, *zip(*jobs)))
@@ -129,9 +129,9 @@ def baselines(found, count=20000, seed=0):
     points = random_designs(count, seed=seed)
     cube = unit_cube(points)
     for row in found.itertuples():
-        target = _Target.of(row.rover)
+        target = Target.of(row.rover)
         feasible = evaluate(points, target.scenario).feasible
-        capped = _lighter_than(target, count, seed + 1)
+        capped = lighter_than(target, count, seed + 1)
         capped = capped[evaluate(capped, target.scenario).feasible]
         chances = max(row.front_designs, 1)
         near = {name: _nearest(target.distances(designs), chances, random) for name, designs in
@@ -157,7 +157,7 @@ def _nearest(distances, chances, random, trials=2000):
     return distances[random.integers(len(distances), size=(trials, chances))].min(1)
 
 
-def _lighter_than(target, count, seed):
+def lighter_than(target, count, seed):
     """Uniform random designs below a rover's mass ceiling.
 
     Total mass rises with every variable. Each one is therefore bounded by what it may reach with all others
