@@ -21,4 +21,3 @@ from .rules import (  # noqa: F401
     family_rules, front_points, frontiers_by_scale, ledger_filter, ledger_html, ledger_text,
     ledger_verdicts, pull_intervals, rediscovery_distances, rocker_bogie_share, sobol_bars,
     variables_on_fronts, verdict)
-from .before_mission import growth, load_transfer, pull_and_demand, speed_limits, stall, step_convergence  # noqa: F401

@@ -190,12 +190,12 @@ def _polar_sunlight(**changes):
 
 
 @cache
-def _hub_speeds(stalled=False):
-    """The wheel speeds that the energy pays for, of 2,000 random designs on the mare."""
+def _hub_speeds(which="moving"):
+    """The wheel speeds that the energy pays for, of 2,000 random designs on the mare: moving, not stalled or all."""
     designs = random_designs(2000, seed=1)
     result = evaluate(designs, mare())
     speeds = result.energy_balance_speed_m_s / (designs.wheel_radius_m * (1 - result.slip))
-    return speeds if stalled else speeds[~result.stalled]
+    return speeds[{"moving": result.cruise_speed_m_s > 0, "not stalled": ~result.stalled, "all": slice(None)}[which]]
 
 
 @cache
@@ -227,6 +227,7 @@ def _far_at_the_pole(design):
 EXERCISES["05.1"] = Exercise(
     "2 numbers", _unlimited, "Lift the limit with `traverse_limit_km=np.inf`; find 80 km in the log's distance.",
     {"That is the range with the limit; lift it.": lambda: [80.0, _unlimited()[1]],
+     "First the km, then the day.": lambda: _unlimited()[::-1],
      "The day, please, not the hour.": lambda: [_unlimited()[0], 24 * _unlimited()[1]],
      "The second is rounded too far: days since sunrise, to a tenth.":
         lambda: [_unlimited()[0], np.ceil(_unlimited()[1])],
@@ -244,8 +245,9 @@ EXERCISES["05.3"] = Exercise(
     "Speed over r (1 - s) for each design that moves; then the middle one.",
     {"That is the mean; a few fast ones pull it up. Half of the designs lie below the median.":
         lambda: _hub_speeds().mean(),
-     "Stalled designs have speed 0 and count for nothing: leave them out.":
-        lambda: np.median(_hub_speeds(True))},
+     "Stalled designs have speed 0 and count for nothing: leave them out.": lambda: np.median(_hub_speeds("all")),
+     "Some do not stall and yet have no power to spare for driving: they do not move either.":
+        lambda: np.median(_hub_speeds("not stalled"))},
     within=0.01)
 
 EXERCISES["05.4"] = Exercise(
