@@ -183,8 +183,11 @@ def _balanced(patch, load, required, low, high, theta_s):
     dug_in = (q - 1) / (1 + q / 2) * (1 - 1e-9)
     left, right = np.maximum(low, -dug_in), np.minimum(high, dug_in)
     middle, every = np.clip(0.0, left, right), np.arange(load.size)
-    g_left, g_middle, g_right = gap(np.concatenate([left, middle, right]), np.tile(every, 3)).reshape(3, -1)
-    drives = g_middle < 0
+    g_middle, g_right = gap(np.concatenate([middle, right]), np.tile(every, 2)).reshape(2, -1)
+    drives, g_left = g_middle < 0, np.full(load.shape, np.nan)
+    lane = np.flatnonzero(~drives)
+    if lane.size:
+        g_left[lane] = gap(left[lane], lane)
     a, b = np.where(drives, middle, left), np.where(drives, right, middle)
     g_a, g_b = np.where(drives, g_middle, g_left), np.where(drives, g_right, g_middle)
     short, slides = drives & (g_b < 0), ~drives & (g_a > 0) & (low <= 0)
@@ -192,7 +195,9 @@ def _balanced(patch, load, required, low, high, theta_s):
     lane, sign = np.flatnonzero(short | slides), np.where(short, 1.0, -1.0)
     if lane.size:
         outer, inward = np.where(short, b, a)[lane], (1e-4 * sign * (b - a))[lane]
-        lane = lane[sign[lane] * (gap(outer - inward, lane) - np.where(short, g_b, g_a)[lane]) > 0]
+        missing = np.where(short, -g_b, g_a)[lane]
+        rise = 1e4 * (sign[lane] * gap(outer - inward, lane) + missing)        # steepest there if there is one peak
+        lane = lane[rise > np.where(short[lane], missing, 0)]
     if lane.size:
         s = inner_surplus(lambda s, i: sign[lane[i]] * gap(s, lane[i]), a[lane], b[lane])
         lane, s = lane[np.isfinite(s)], s[np.isfinite(s)]

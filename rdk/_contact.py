@@ -138,7 +138,7 @@ def entry_angle(patch, s, target, with_pull=0.0, rule=DRIVING):
     # Bekker's closed form for a smooth free-rolling wheel, z^(n + 1/2) = 3 W / ((3 - n) b k_eff sqrt(2 r)), starts it
     z = (3 * target / (np.maximum(3 - n, 0.5) * b * r * A * np.sqrt(2))) ** (2 / (2 * n + 1))
     theta = np.minimum(np.sqrt(2 * z), 1.2)
-    with_pull = np.broadcast_to(with_pull, target.shape)
+    with_pull = with_pull + np.zeros_like(target)
     result = np.full((3, target.size), np.nan)
     lane = np.flatnonzero(np.isfinite(theta))
     if lane.size < theta.size:
@@ -149,6 +149,7 @@ def entry_angle(patch, s, target, with_pull=0.0, rule=DRIVING):
             break
         arcs = Arcs(theta, s, patch, rule)
         load, pull, (load_t, pull_t) = arcs.load, arcs.pull, arcs.by_entry()
+        del arcs                                         # its arrays are the next step's: they stay in cache
         held = np.sqrt(load * load + with_pull * pull * pull)
         slope = (load * load_t + with_pull * pull * pull_t) / held * theta
         held = np.where(load > 0, held, 0.0)
@@ -294,12 +295,14 @@ def _inner_balance(patch, load, required, low, high, short, theta_end, rule):
 
     `short` lanes pull too little at both ends and may peak between them: the root below the peak is theirs. The others
     pull too much and may dip: theirs is the root above the dip. Either way the pull falls with slip at the end
-    `theta_end` belongs to (the high one of `short` lanes, else the low one), which one evaluation shows.
+    `theta_end` belongs to (the high one of `short` lanes, else the low one), and steeply enough to make up for what is
+    missing there, which one evaluation shows.
     """
     result = np.full((2, load.size), np.nan)
     arcs = Arcs(theta_end, np.where(short, high, low), patch, rule)
     (load_t, pull_t), (load_s, pull_s) = arcs.by_entry(), arcs.by_slip()
-    lane = np.flatnonzero(pull_s - pull_t * load_s / load_t < 0)
+    fall = pull_t * load_s / load_t - pull_s             # per unit of slip, steepest at the end of a single peak
+    lane = np.flatnonzero(fall * (high - low) > np.abs(required - arcs.pull))
     if not lane.size:
         return result
     patch, load, required, low, high, short = (patch.take(lane), *(a[lane] for a in (load, required, low, high, short)))
@@ -328,6 +331,7 @@ def newton_balance(patch, load, required, low, high, theta, guess, rule):
         arcs = Arcs(theta, s, patch, rule)
         (fz_t, dp_t), (fz_s, dp_s) = arcs.by_entry(), arcs.by_slip()
         f, g = load - arcs.load, required - arcs.pull
+        del arcs
         det = fz_t * dp_s - fz_s * dp_t
         d_theta, d_s = (f * dp_s - g * fz_s) / det, (g * fz_t - f * dp_t) / det
         new_theta = np.clip(theta + d_theta, theta / 2, np.minimum(theta * 1.5, HALF_PI))
