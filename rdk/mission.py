@@ -338,15 +338,25 @@ def _traverse(design, scenario, model, slip, torque_nm, stalled, shape, with_arr
     block = max(MARCH_ELEMENTS // len(times), 32)
     results = {}
     for start in range(0, max(size, 1), block):
-        part = {name: value[start:start + block] if np.ndim(value) else value for name, value in lanes.items()}
-        found, log = _march(SimpleNamespace(**part), times, steps, shape == (), with_arrival)
+        lane = SimpleNamespace(**{name: value[start:start + block] if np.ndim(value) else value
+                                  for name, value in lanes.items()})
+        exact = np.asarray(lane.exact_floor) == 1
+        found, log = _march(lane, times, steps, exact.any(), shape == (), with_arrival)
+        if exact.any() and not exact.all():
+            paper, _ = _march(lane, times, steps, False, False, with_arrival)
+            found = {name: np.where(exact, value, paper[name]) for name, value in found.items()}
         for name, value in found.items():
             results.setdefault(name, np.empty(size, np.result_type(value)))[start:start + block] = value
     return {name: value.reshape(shape) for name, value in results.items()}, log
 
 
-def _march(lane, times, steps, with_log, with_arrival):
-    """March a block of lanes: every attribute of `lane` is a number or an array with one entry a lane."""
+def _march(lane, times, steps, exact, with_log, with_arrival):
+    """March a block of lanes: every attribute of `lane` is a number or an array with one entry a lane.
+
+    The paper takes the sun at the end of each step and drives a step that reaches the floor to its end; `exact` takes
+    the sun in the middle of the step and throttles from where the floor is reached, so that the step's length hardly
+    matters.
+    """
     sun = lane.solar_constant_w_m2 * lane.panel_efficiency * lane.dust_factor * lane.solar_area_m2
     duty, limit, capacity = lane.duty_cycle, np.asarray(lane.traverse_limit_km), np.asarray(lane.battery_capacity_wh)
     base_load = lane.avionics_power_w + np.asarray(lane.payload_power_w)
@@ -358,11 +368,10 @@ def _march(lane, times, steps, with_log, with_arrival):
     speed, energy_speed, mobility = (np.where(moving, x, 0.0) for x in cruise_speed(
         average, base_load, lane.wheel_count, lane.torque_nm, lane.slip, lane.wheel_radius_m, duty,
         lane.drivetrain_efficiency, hub_speed, lane.maximum_speed_m_s))
-    incidence = _incidence(times, lane)
+    incidence = _incidence(times - steps / 2 if exact else times, lane)
     solar = incidence * sun                              # (steps, lanes)
     floor = lane.soc_floor * capacity
     initial = np.maximum(lane.soc_initial * capacity, floor)
-    exact = np.asarray(lane.exact_floor) == 1
 
     def charge(load):
         """Stored energy at the end of each step, and the share of the step spent on the floor, short of power."""
@@ -375,21 +384,21 @@ def _march(lane, times, steps, with_log, with_arrival):
         on_floor = stored <= floor
         # a step that starts on the floor with too little sun drives on what the sun leaves above the base load
         share = deficit & np.concatenate([np.broadcast_to(initial <= floor, (1, on_floor.shape[1])), on_floor[:-1]])
-        if exact.any():                                  # so does one that reaches the floor, from there on
+        if exact:                                        # so does one that reaches the floor, from there on
             before = np.concatenate([np.broadcast_to(initial, (1, on_floor.shape[1])), stored[:-1]])
             hours = (before - floor) * lane.discharge_efficiency / (load - solar)
-            share = np.where(deficit & on_floor & exact, 1 - hours / steps[:, None], share)
+            share = np.where(deficit & on_floor, 1 - hours / steps[:, None], share)
         return stored, on_floor, share
 
     stored, on_floor, share = charge(base_load + duty * mobility)
     throttled = share > 0
     # energies by the trapezoidal rule over the samples, nothing recorded at the start: the last one counts half
-    samples = (steps + np.append(steps[1:], 0.0)) / 2
+    samples = steps if exact else (steps + np.append(steps[1:], 0.0)) / 2
     driven_h, mobility_h = duty * steps.sum(), duty * samples.sum()
     driving = np.asarray(duty)                           # duty of each step
     if throttled.any():
         sunlit = _solar_duty(solar, base_load, mobility, duty)
-        driving = duty - share * (duty - sunlit) if exact.any() else np.where(share, sunlit, duty)
+        driving = duty - share * (duty - sunlit) if exact else np.where(share, sunlit, duty)
         lost = duty - driving
         driven_h, mobility_h = driven_h - steps @ lost, mobility_h - samples @ lost
     distance = np.where(driven_h > 0, 3.6 * speed * driven_h, 0.0)
@@ -404,7 +413,7 @@ def _march(lane, times, steps, with_log, with_arrival):
     unserved_h = 0.0
     if on_floor.any():
         dark = on_floor & (solar < base_load)
-        unserved_h = steps @ (np.where(exact, dark * share, dark) if exact.any() else dark)
+        unserved_h = steps @ (dark * share if exact else dark)
     generated = sun * (samples @ incidence)
     consumed = base_load * samples.sum() + mobility * mobility_h
 
