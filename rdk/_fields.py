@@ -148,6 +148,8 @@ class Later:
         value = vars(record)[self.name]
         if callable(value):
             value = vars(record)[self.name] = value()
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
         return value
 
     def __set__(self, record, value):

@@ -4,11 +4,9 @@ Closed-form solar geometry on a smooth sphere (Duffie & Beckman 2013). At the po
 out what the terrain does to it, which matters more: `rdk.sky` has the real sun and the share of it above a skyline.
 Azimuths run from north, clockwise: 0 north, 90 east, 180 south.
 """
-from __future__ import annotations
-
 import numpy as np
 
-HORIZON = 1e-12                                          # sin(elevation) below this is rounding, not sunlight
+ROUNDING = 1e-12                                         # sin(elevation) below this share of its terms is no sunlight
 
 
 def hour_angle_deg(time_h, synodic_day_h=708.734136):
@@ -76,7 +74,12 @@ def incidence_factor(latitude_deg, hour_angle, tilt_deg=0.0, azimuth_deg=180.0, 
     tilt, azimuth = np.radians(tilt_deg), np.radians(azimuth_deg)
     cos_i = up * np.cos(tilt) + np.sin(tilt) * (north * np.cos(azimuth) + east * np.sin(azimuth))
     facing = np.maximum(cos_i, 0.0)
-    return (np.where(up > HORIZON, facing, 0.0) if lit is None else facing * lit)[()]
+    if lit is not None:
+        return (facing * lit)[()]
+    # at a pole the sun circles on the horizon: what counts is the sign, as close to the pole as one likes
+    lat, dec = np.radians(latitude_deg), np.radians(declination_deg)
+    least = ROUNDING * (abs(np.sin(lat) * np.sin(dec)) + abs(np.cos(lat) * np.cos(dec)))
+    return np.where(up > least, facing, 0.0)[()]
 
 
 def panel_power(area_m2, incidence, *, efficiency=0.28, dust_factor=0.9, solar_constant_w_m2=1361.0):

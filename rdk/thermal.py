@@ -3,11 +3,9 @@
 Gilmore (2002). No conduction, no internal gradient, no time constant; the lunar surface and the sky act through one
 effective sink temperature. Good for a survival flag, not for a thermal design.
 """
-from __future__ import annotations
-
 import numpy as np
 
-STEFAN_BOLTZMANN = 5.670374419e-8                        # W m-2 K-4, CODATA 2018 (exact); scipy.constants is slow to load
+STEFAN_BOLTZMANN = 5.670374419e-8                        # W m-2 K-4, exact; scipy.constants is slow to load
 ZERO_CELSIUS = 273.15
 
 
@@ -61,8 +59,3 @@ def node_temperature(heat_w, area_m2, sink_temperature_k, *, emissivity=0.85):
     """
     fourth_power = np.asarray(sink_temperature_k, float) ** 4 + heat_w / (emissivity * STEFAN_BOLTZMANN * area_m2)
     return np.sqrt(np.sqrt(fourth_power)) - ZERO_CELSIUS
-
-
-def survives(hot_temperature_c, cold_temperature_c, minimum_c=-30.0, maximum_c=50.0):
-    """Whether both cases stay inside the operating limits (degrees Celsius)."""
-    return (hot_temperature_c <= maximum_c) & (cold_temperature_c >= minimum_c)

@@ -360,7 +360,8 @@ def mass_sensitivity(change_pct: float = 20.0, model: Model = Model()) -> pd.Dat
     value = np.array([getattr(model, name) for name in names])
     table = pd.DataFrame(dict(coefficient=names, value=value, changed_value=value * (1 + change),
                               median_abs_error_pct=np.median(error, 1)))
-    return table.join(pd.DataFrame(100 * (total[1:] / total[0] - 1), columns=list(rovers.rover)))
+    table = table.join(pd.DataFrame(100 * (total[1:] / total[0] - 1), columns=list(rovers.rover)))
+    return table[(total[1:] != total[0]).any(1)].reset_index(drop=True)              # without those that are not in use
 
 
 # ---- flown rovers ---------------------------------------------------------------------------------------------

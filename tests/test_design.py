@@ -1,7 +1,9 @@
 """Designs, scenarios and models: what they accept, what they refuse and how, populations and their lanes."""
 
+import copy
 import dataclasses
 import math
+import pickle
 import warnings
 from dataclasses import replace
 
@@ -36,7 +38,8 @@ IDS = [f"{type(record).__name__}.{name}" for record, name in EVERY]
 
 @pytest.mark.parametrize("record, name", EVERY, ids=IDS)
 def test_no_field_takes_what_is_no_number(record, name):
-    for value in (math.nan, -math.inf, "0.1", b"1", *(() if name in MAY_BE_NONE else (None,)), True, 1j, [[1.0], [2.0, 3.0]],
+    for value in (*(() if name in MAY_BE_NONE else (None,)), math.nan, -math.inf, "0.1", b"1", True, 1j,
+                  [[1.0], [2.0, 3.0]],
                   np.array([0.1, None]), pd.Series(["a"]), {}, np.datetime64("2026-01-01")):
         with pytest.raises(ValueError) as refused:
             replace(record, **{name: value})
@@ -264,3 +267,105 @@ def test_random_designs_fill_the_design_space():
 def test_random_designs_refuse_a_senseless_count(count):
     with pytest.raises(ValueError, match="^count must be"):
         rdk.random_designs(count)
+
+
+# ---- records as values --------------------------------------------------------------------------------------
+
+RECORDS = [DESIGN, SCENARIO, MODEL, SOIL, DESIGN.wheel, rdk.evaluate(DESIGN, SCENARIO)]
+POPULATION = rdk.random_designs(5, seed=1)
+
+
+@pytest.mark.parametrize("record", [*RECORDS, POPULATION, rdk.evaluate(POPULATION, SCENARIO), POPULATION[:0]],
+                         ids=lambda record: f"{type(record).__name__}{record.shape}")
+def test_records_are_values(record):
+    again = copy.deepcopy(record)
+    assert record is not again and record == again and hash(record) == hash(again) and bool(record) is True
+    assert pickle.loads(pickle.dumps(record)) == record
+    assert record != "a record" and record is not None and (record == 1) is False
+    assert len({record, again}) == 1
+
+
+def test_records_that_differ_are_unequal_whatever_their_shapes():
+    assert (POPULATION == POPULATION.replace(wheel_radius_m=POPULATION.wheel_radius_m * 1.01)) is False
+    assert (POPULATION == DESIGN) is False and (POPULATION[:2] == POPULATION) is False and (DESIGN == SCENARIO) is False
+    assert SCENARIO != SCENARIO.replace(name="other") and SCENARIO != SCENARIO.replace(soil=rdk.soil("apollo-loose"))
+    assert SCENARIO != SCENARIO.replace(problem=Problem(seed=9)) and {SCENARIO: 1}[rdk.scenario(SCENARIO.name)] == 1
+    assert SOIL.replace(cohesive_modulus_kn_m_n1=[0.0, 1.0]) == SOIL.replace(cohesive_modulus_kn_m_n1=[-0.0, 1.0])
+    buried = rdk.evaluate(DESIGN, SCENARIO.replace(soil=SOIL.replace(frictional_modulus_kn_m_n2=1e-6,
+                                                                     cohesive_modulus_kn_m_n1=0.0)))
+    assert math.isnan(buried.slip) and buried == copy.deepcopy(buried)
+
+
+@pytest.mark.parametrize("record", RECORDS, ids=lambda record: type(record).__name__)
+def test_every_record_can_be_replaced_and_offers_the_nearest_field(record):
+    name = next(f.name for f in dataclasses.fields(record) if isinstance(getattr(record, f.name), float))
+    assert record.replace() == record and getattr(record.replace(**{name: 0.125}), name) == 0.125
+    with pytest.raises(ValueError, match=f"{type(record).__name__} has no field '{name[:-1]}'; nearest are .*{name}"):
+        record.replace(**{name[:-1]: 1.0})
+
+
+def test_a_stack_is_a_population_of_its_parts():
+    parts = [DESIGN, DESIGN.replace(wheel_radius_m=0.2, wheel_count=6), rdk.rover("Tenacious")]
+    stacked = rdk.Design.stack(parts)
+    assert stacked.shape == (3,) and list(stacked) == parts and stacked.wheel_count.tolist() == [4, 6, 4]
+    assert rdk.Design.stack([POPULATION, DESIGN]).shape == (2, 5)
+    soils = [rdk.soil(name) for name in rdk.soil_names()]
+    assert rdk.evaluate(DESIGN, SCENARIO.replace(soil=Soil.stack(soils))).shape == (len(soils),)
+    missions = [SCENARIO, SCENARIO.replace(slope_deg=3.0, name="gentle", soil=soils[0])]
+    both = rdk.Scenario.stack(missions)
+    assert both.slope_deg.tolist() == [15.0, 3.0] and both.name == "equatorial_mare_traverse, gentle"
+    assert both[1].soil.replace(name="") == soils[0].replace(name="")
+    found = [rdk.evaluate(DESIGN, mission) for mission in missions]
+    assert rdk.Performance.stack(found).range_km.tolist() == [one.range_km for one in found]
+    for records, error, message in (([], ValueError, "at least one Design; got none"),
+                                    (["Rashid-1"], TypeError, r"records\[0\] must be a Design, such as rdk.rover"),
+                                    ([DESIGN, SOIL], TypeError, r"records\[1\] must be a Design.*; got Soil"),
+                                    ([POPULATION, POPULATION[:2]], ValueError, r"records\[1\] \(2,\)")):
+        with pytest.raises(error, match=message):
+            rdk.Design.stack(records)
+    with pytest.raises(ValueError, match="duration_earth_days must be the same in all records; got 14.0 and others"):
+        rdk.Scenario.stack([SCENARIO, rdk.scenario("polar_prospecting")])
+
+
+def test_what_a_record_holds_cannot_be_written():
+    mine = np.array([0.1, 0.2])
+    design = DESIGN.replace(wheel_radius_m=mine)
+    mine[0] = -1                                         # the record has its own
+    assert design.wheel_radius_m.tolist() == [0.1, 0.2] and mine.flags.writeable
+    found = rdk.evaluate(design, SCENARIO)
+    for array in (design.wheel_radius_m, POPULATION.battery_capacity_wh, found.range_km, found.mass.total_kg,
+                  found.arrival_h, rdk.evaluate(DESIGN, SCENARIO).log.soc, design[:1].wheel_radius_m):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = -50
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        design.wheel_radius_m = 0.1
+
+
+@pytest.mark.parametrize("value", [
+    np.ma.array([0.1, 0.2], mask=[False, True]), np.ma.masked, np.ma.array(0.1, mask=True),
+    [np.ma.array([0.1], mask=[True]), np.ma.array([0.2])], np.ma.array([0.1, 0.2])], ids=range(5))
+def test_masked_values_are_refused(value):
+    with pytest.raises(ValueError, match="wheel_radius_m must be positive and finite; got a masked array"):
+        DESIGN.replace(wheel_radius_m=value)
+
+
+@pytest.mark.parametrize("record", [*RECORDS, POPULATION, rdk.evaluate(POPULATION, SCENARIO), rdk.Model.engineering(),
+                                    rdk.random_designs(20_000, seed=1), POPULATION[:0],
+                                    rdk.evaluate(DESIGN, SCENARIO).mass, rdk.evaluate(DESIGN, SCENARIO).log],
+                         ids=lambda record: f"{type(record).__name__}{record.shape}")
+def test_a_record_shows_itself_as_a_short_table(record):
+    text, table = repr(record), record._repr_html_()
+    assert text.startswith(type(record).__name__) and len(text.splitlines()) < 20 and len(text) < 1500
+    assert table.startswith("<p>" + type(record).__name__) and "<table" in table and table.count("<tr") < 20
+
+
+def test_names_are_text_in_a_table():
+    mission = SCENARIO.replace(name="<b>it's $x$\n")
+    assert "<p>Scenario &lt;b&gt;it&#x27;s $x$" in mission._repr_html_() and "it's" in repr(mission)
+
+
+def test_the_kernel_brings_its_own_transition():
+    assert MODEL.transition == (0.4, 0.2) and rdk.Model(kernel="imposed-arc").transition == (0.18, 0.32)
+    assert rdk.Model(kernel="imposed-arc", transition_c2=0.1).transition == (0.18, 0.1)
+    with pytest.raises(ValueError, match="kernel must be one of 'paper', 'imposed-arc'; got 'papers'"):
+        rdk.Model(kernel="papers")

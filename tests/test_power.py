@@ -120,8 +120,22 @@ def test_panel_facing_the_sun_takes_all_of_it():
         assert power.incidence_factor(latitude, 0.0, 90 - 1e-9, azimuth + 180) == 0     # from behind
     # horizon and night
     assert power.incidence_factor(0.0, np.array([-90.0, 90.0, 180.0])).tolist() == [0, 0, 0]
-    poles, towards_noon = np.array([-90.0, 90.0]), np.array([0.0, 180.0])
-    assert power.incidence_factor(poles, 0.0, 80.0, towards_noon).tolist() == [0, 0]
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_a_pole_is_lit_as_the_ground_beside_it(sign):
+    """There the sun circles on the horizon; a limit that is not reached would be a jump."""
+    hours = np.linspace(-180, 180, 97)
+    for tilt in 0.0, 60.0, 80.0:
+        at, beside = (power.incidence_factor(sign * latitude, hours, tilt, 90.0 * (1 + sign))
+                      for latitude in (90.0, 90 - 1e-7))
+        np.testing.assert_allclose(at, beside, atol=1e-8)           # 1e-7 degrees move the sun by 2e-9 rad
+    assert at.max() == pytest.approx(np.sin(np.radians(80)), rel=1e-12)
+    assert (at == 0).mean() == pytest.approx(0.5, abs=0.02)
+    mission = rdk.scenario("polar_prospecting").replace(panel_tilt_deg=80.0, panel_azimuth_deg=90.0 * (1 + sign))
+    both = mission.replace(latitude_deg=sign * np.array([90.0, 90 - 1e-5]))
+    ranges = rdk.evaluate(rdk.rover("Rashid-1"), both).range_km
+    assert ranges[0] == pytest.approx(ranges[1], rel=1e-5) and ranges[0] > 10
 
 
 @quick

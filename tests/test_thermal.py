@@ -80,11 +80,6 @@ def test_limits():
     assert np.all(noon >= 0)
 
 
-def test_survival_needs_both_limits():
-    hot, cold = np.array([49.0, 51.0, 49.0, 50.0]), np.array([-29.0, -29.0, -31.0, -30.0])
-    assert thermal.survives(hot, cold).tolist() == [True, False, False, True]
-
-
 def test_evaluate_agrees_with_the_transcription():
     designs = rdk.random_designs(50, seed=2)
     for name in rdk.scenario_names("canonical"):
