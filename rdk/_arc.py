@@ -6,7 +6,7 @@ shape, times a level that the vertical balance gives in closed form. Same lanes 
 """
 import numpy as np
 
-from ._contact import HALF_PI, rule_of
+from ._contact import HALF_PI, both, pair, rule_of, within
 from ._roots import inner_surplus, root
 
 NODES, BRAKING_NODES = 12, 16                            # on each arc; on each of the four parts of a braking wheel's
@@ -44,7 +44,7 @@ def static_angle(patch, load):
     for _ in range(40):
         held, power = static_load(theta, patch)
         step = np.log(load / held) / power
-        theta, last = np.minimum(theta * np.exp(np.clip(step, -2, 2)), HALF_PI), theta
+        theta, last = np.minimum(theta * np.exp(within(step, -2, 2)), HALF_PI), theta
         if not np.any(np.abs(theta - last) > 1e-6 * theta):      # converges quadratically: what is left is ~1e-12
             break
     return np.where((theta < HALF_PI) & (np.abs(step) < 1e-5), theta, np.nan)
@@ -70,17 +70,18 @@ def reversal(theta_1, s):
 
 def shares(theta_1, s, patch):
     """Load, pull and torque of the normal stress at level 1 with its friction, then those of cohesion alone."""
-    whole = np.empty((6, theta_1.size))
-    lane, brakes = np.flatnonzero(s >= 0), np.flatnonzero(s < 0)
+    brakes = np.flatnonzero(s < 0)
+    if not brakes.size:
+        return _shares(theta_1, s, patch, 0.0, 1.0, DRIVING, WEIGHT)
+    whole, lane = np.empty((6, theta_1.size)), np.flatnonzero(s >= 0)
     if lane.size:
         whole[:, lane] = _shares(theta_1[lane], s[lane], patch.take(lane), 0.0, 1.0, DRIVING, WEIGHT)
-    if brakes.size:
-        theta_1, s, patch = theta_1[brakes], s[brakes], patch.take(brakes)
-        # both arcs are cut where the shear changes sign on one of them: nothing that the nodes see has a kink
-        kappa, at = patch.c1 + patch.c2 * np.abs(s), reversal(theta_1, s) / theta_1
-        cut = np.where(at > kappa, (at - kappa) / (1 - kappa), 1 - at / kappa)
-        whole[:, brakes] = sum(_shares(theta_1, s, patch, *part, BRAKING, BRAKING_WEIGHT)
-                               for part in ((0.0, cut), (cut, 1.0)))
+    theta_1, s, patch = theta_1[brakes], s[brakes], patch.take(brakes)
+    # both arcs are cut where the shear changes sign on one of them: nothing that the nodes see has a kink
+    kappa, at = patch.c1 + patch.c2 * np.abs(s), reversal(theta_1, s) / theta_1
+    cut = np.where(at > kappa, (at - kappa) / (1 - kappa), 1 - at / kappa)
+    whole[:, brakes] = sum(_shares(theta_1, s, patch, *part, BRAKING, BRAKING_WEIGHT)
+                           for part in ((0.0, cut), (cut, 1.0)))
     return whole
 
 
@@ -98,8 +99,8 @@ def _shares(theta_1, s, patch, start, end, nodes, weight):
     j = (theta_1 - theta) - (1 - s) * (sin_1 - sin)                      # shear displacement over r
     mobilised = np.copysign(1 - np.exp(np.abs(j) * (-r / K)), j)
     friction = sigma * mobilised * tan_phi                               # eq. tau, less cohesion
-    span = np.stack([1 - kappa, kappa]) * ((end - start) * theta_1 * b * r)      # area of each arc
-    v, p, t, v_c, p_c, t_c = [(span * (weight @ f)).sum(0) for f in (
+    span = pair(1 - kappa, kappa, (end - start) * theta_1 * b * r)       # area of each arc
+    v, p, t, v_c, p_c, t_c = [both(span * (weight @ f)) for f in (
         sigma * cos + friction * sin, friction * cos - sigma * sin, friction,
         mobilised * sin, mobilised * cos, mobilised)]
     return np.stack([v, p, r * t, c * v_c, c * p_c, r * c * t_c])
