@@ -271,8 +271,11 @@ def pull_intervals(points):
         Bars are the intervals, ticks on them the nominal pull, markers the measurements.
     """
     names = list(dict.fromkeys(points.experiment))
-    figure, axes = panels(1, len(names), figsize=(4.2 * len(names), 3.6), squeeze=False)
-    for ax, name in zip(axes[0], names):
+    down = -(-len(names) // 3)
+    figure, axes = panels(down, min(len(names), 3), figsize=(4.2 * min(len(names), 3), 3.4 * down), squeeze=False)
+    for ax in axes.flat[len(names):]:
+        ax.set_axis_off()
+    for ax, name in zip(axes.flat, names):
         for i, (wheel, rows) in enumerate(points[points.experiment == name].groupby("wheel")):
             x = rows.slip + 0.008 * (i - 0.5)
             ax.vlines(x, rows.low_n, rows.high_n, color=COLOURS[i], lw=2.5, alpha=0.45)

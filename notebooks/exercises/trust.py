@@ -63,7 +63,7 @@ def _climbs_on_35(design):
         return "It does not drive the mission itself on that soil: " + ("it stalls." if p.stalled
                                                                         else "too little sun.")
     low = intervals(design, scenario, level=0.8).low["slope_capability_deg"]
-    return "" if low >= 14 else f"Nine of ten draws climb {low:.1f} degrees only: too little margin."
+    return "" if low >= 13 else f"Nine of ten draws climb {low:.1f} degrees only: too little margin."
 
 
 def _climber():
