@@ -81,6 +81,7 @@ def test_the_collection_is_numbered_without_gaps():
 
 def test_executed_in_order_and_clean(path, notebook, code):
     assert notebook.metadata.kernelspec.name == "python3" and "widgets" not in notebook.metadata
+    assert notebook.metadata.language_info.get("file_extension") == ".py"    # else nbconvert --to script writes .txt
     counts = [cell.execution_count for cell in code]
     assert counts == list(range(1, len(code) + 1)), f"run: python notebooks/execute.py {path.name}"
     for cell in code:
@@ -230,3 +231,22 @@ def test_the_guide_lists_every_notebook_and_puts_each_on_the_course():
 
 def test_the_title_asks_a_question(notebook):
     assert notebook.cells[0].source.splitlines()[0].rstrip().endswith("?")
+
+
+def test_a_live_picture_is_also_a_still_one_with_its_sentence(code):
+    for i, cell in enumerate(code):
+        made = re.search(r"^(\w+) = (?:rdk\.)?figures\.live\(", cell.source, re.M)
+        if made:
+            shown = cell if cell.source.rstrip().endswith(f"\n{made[1]}") else code[i + 1]
+            data = [output.data for output in shown.outputs if "image/png" in output.get("data", {})]
+            assert data and data[0]["text/plain"].endswith("."), cell.source
+
+
+def test_departures_point_to_sections_that_exist_and_are_linked_from_each_notebook_they_name():
+    page = (REPO / "notebooks/departures.md").read_text(encoding="utf-8")
+    places = re.findall(r"\]\((\d\d_\w+)\.ipynb\)(?:, section (\d+))?", page)
+    assert places
+    for name, section in places:
+        source = (REPO / f"notebooks/{name}.ipynb").read_text(encoding="utf-8")
+        assert not section or f'"## {section} ' in source, (name, section)
+        assert "(departures.md)" in source, name

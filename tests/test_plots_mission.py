@@ -180,3 +180,19 @@ def test_peak_solar_shows_prediction_sweep_and_record():
         assert low == 0 and high > max(row.clean_peak_high_w, row.published_high_w)
         band = axes.collections[0].get_paths()[0].vertices[:, 1]
         assert (band.min(), band.max()) == (row.published_low_w, row.published_high_w)
+
+
+# ---- sketches ----------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("name", ["heat_box", "rover_on_slope", "rover_parts", "single_wheel_rig", "sky_and_panel",
+                                  "wheel_in_soil"])
+@pytest.mark.filterwarnings("error")                     # a letter that the font lacks
+def test_nothing_written_on_a_sketch_is_cut_off(name):
+    figure = getattr(plots, name)()
+    figure.canvas.draw()
+    width, height = figure.canvas.get_width_height()
+    for axes in figure.axes:
+        for text in [*axes.texts, axes.title]:
+            box = text.get_window_extent()
+            inside = box.x0 > -1 and box.y0 > -1 and box.x1 < width + 1 and box.y1 < height + 1
+            assert inside or not text.get_text(), text
