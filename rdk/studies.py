@@ -3,8 +3,6 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
-import json
-import os
 import queue
 import re
 import sys
@@ -15,9 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from ._fields import check
-from .design import DESIGN_SPACE, Design, Model, Scenario
-from .mission import evaluate
-from .tradespace import Front, budget, pareto_front, posed
+from .design import Model, Scenario
+from .tradespace import Front, budget, pareto_front
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -34,13 +31,10 @@ class Case:
 
     def run(self) -> Front:
         """The front of this case; the same bits wherever it runs."""
-        scenario, model = self._posed()
+        scenario = dataclasses.replace(self.scenario, required_obstacle_height_m=self.obstacle_height_m)
+        model = dataclasses.replace(self.model, shear_scale=self.shear_scale)
         return pareto_front(scenario, population=self.population, generations=self.generations, seed=self.seed,
                             start=self.start, model=model, warn=False)
-
-    def _posed(self):
-        return (dataclasses.replace(self.scenario, required_obstacle_height_m=self.obstacle_height_m),
-                dataclasses.replace(self.model, shear_scale=self.shear_scale))
 
     @property
     def label(self) -> str:
@@ -51,33 +45,14 @@ class Case:
         return (f"{name}_seed{self.seed}_shear{self.shear_scale:g}_obstacle{self.obstacle_height_m:g}"
                 f"_{self.population}x{self.generations}_{key}")
 
-    def save(self, folder: Path, front: Front):
-        """Write a front's designs to its own file: complete or not at all."""
-        designs = {name: np.broadcast_to(getattr(front.designs, name), front.designs.shape).tolist()
-                   for name in DESIGN_SPACE}
-        text = json.dumps({"case": self.label, "message": front.message, "designs": designs,
-                           "objective_history": [F.tolist() for F in front.objective_history]})
-        part = folder / f".{self.label}.{os.getpid()}.part"
-        part.write_text(text, encoding="utf-8")
-        os.replace(part, folder / f"{self.label}.json")
-
     def load(self, folder: Path) -> Front | None:
-        """A front from its file, its performance evaluated anew; None where there is no sound file."""
+        """The front from its file, its performance evaluated anew; None where there is no sound file."""
         path = folder / f"{self.label}.json"
-        if not path.exists():
-            return None
-        scenario, model = self._posed()
-        scenario, problem = posed(scenario, seed=self.seed)
         try:
-            kept = json.loads(path.read_text(encoding="utf-8"))
-            designs = Design(**{name: np.array(kept["designs"][name], float) for name in DESIGN_SPACE})
-            history = tuple(np.array(F, float).reshape(len(F), len(problem.objectives))
-                            for F in kept["objective_history"])
-            message = str(kept["message"])
-        except (ValueError, KeyError, TypeError) as error:
-            warnings.warn(f"{path.name} in {folder} is damaged and computed anew: {error}", UserWarning, stacklevel=4)
+            return Front.load(path) if path.exists() else None
+        except ValueError as error:
+            warnings.warn(f"{path.name} in {folder} is damaged and computed anew: {error}", UserWarning, stacklevel=3)
             return None
-        return Front(designs, evaluate(designs, scenario, model=model), scenario, model, problem, history, message)
 
 
 def fronts(scenarios: Iterable[Scenario], *, seeds: Iterable[int] | None = None, shear_scales: Iterable[float] = (1.0,),
@@ -133,7 +108,7 @@ def fronts(scenarios: Iterable[Scenario], *, seeds: Iterable[int] | None = None,
     def keep(case, front, new=True):
         nonlocal finished
         if new and folder is not None:
-            case.save(folder, front)
+            front.save(folder / f"{case.label}.json")
         done[case] = front
         finished += 1
         if on_front is not None:

@@ -6,14 +6,18 @@ sweeps, intervals, attribution - is in `sampling`.
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
+import os
 import warnings
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from . import catalog
 from ._fields import Shown, check, unknown
 from .design import DESIGN_SPACE, Design, Model, Problem, Scenario
 from .mission import Performance, evaluate
@@ -70,6 +74,36 @@ class Front(Shown):
         """A pandas DataFrame: one row a design, its variables first, then its performance."""
         import pandas as pd
         return pd.concat([self.designs.to_frame(), self.performance.to_frame()], axis=1)
+
+    def save(self, path: str | Path) -> None:
+        """Write the front to a JSON file, complete or not at all; `rdk.catalog.from_json` reads its designs too."""
+        kept = json.loads(catalog.to_json(self.designs, self.scenario)) | {
+            "model": {name: "inf" if v == math.inf else v for name, v in dataclasses.asdict(self.model).items()},
+            "problem": dataclasses.asdict(self.problem), "message": self.message,
+            "objective_history": [F.tolist() for F in self.objective_history]}
+        path = Path(path)
+        part = path.with_name(f".{path.name}.{os.getpid()}.part")
+        part.write_text(json.dumps(kept, allow_nan=False), encoding="utf-8")
+        os.replace(part, path)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Front:
+        """The front in a file of `save`, its performance evaluated anew; ValueError where the file is damaged."""
+        try:
+            kept = json.loads(Path(path).read_text(encoding="utf-8"))
+            empty = not any(kept["design"][name] for name in DESIGN_SPACE)
+            some = {"design": {name: v.high for name, v in DESIGN_SPACE.items()}} if empty else {}
+            designs, scenario = catalog.from_json(json.dumps(kept | some))
+            if empty:
+                designs = Design(**{name: np.empty(0) for name in DESIGN_SPACE})
+            model = Model(**{name: math.inf if v == "inf" else v for name, v in kept["model"].items()})
+            problem = Problem(**kept["problem"] | {"constraints": tuple(map(tuple, kept["problem"]["constraints"]))})
+            history = tuple(np.array(F, float).reshape(len(F), len(problem.objectives))
+                            for F in kept["objective_history"])
+            return cls(designs, evaluate(designs, scenario, model=model), scenario, model, problem, history,
+                       str(kept["message"]))
+        except (KeyError, TypeError, AttributeError, ValueError) as error:
+            raise ValueError(f"{path} holds no sound front: {error}") from None
 
     def _summary(self):
         fields = dict.fromkeys([*self.problem.objectives, "wheel_count", "wheel_radius_m", "battery_capacity_wh"])

@@ -357,6 +357,24 @@ def test_a_converged_search_can_be_stopped_and_kept(tmp_path):
     assert_same_study(rdk.fronts([HIGHLAND], **few), rdk.fronts([HIGHLAND], **few))
 
 
+def test_a_front_is_kept_in_a_file_with_all_that_made_it(small, tmp_path):
+    path = tmp_path / "front.json"
+    model = rdk.Model(hub_no_load_speed_rad_s=math.inf, growth_fraction=0.3)
+    other = rdk.pareto_front(replace(HIGHLAND, required_obstacle_height_m=0.05), **SMALL, model=model)
+    empty = rdk.pareto_front(MARE, **SMALL, constraints=[("range_km", ">=", 90)], warn=False)
+    for front in small, other, empty:
+        front.save(path)
+        assert_same_bits(ts.Front.load(path), front)
+        json.loads(path.read_text(), parse_constant=pytest.fail)     # strict: no Infinity
+    small.save(path)
+    designs, mission = catalog.from_json(path.read_text(encoding="utf-8"))
+    assert mission == small.scenario and (designs.wheel_radius_m == small.designs.wheel_radius_m).all()
+    path.write_text("[1]")
+    with pytest.raises(ValueError, match="front.json holds no sound front"):
+        ts.Front.load(path)
+    assert [p.name for p in tmp_path.iterdir()] == ["front.json"]
+
+
 def test_a_front_shows_itself_in_a_few_lines(small):
     lines = repr(small).splitlines()
     assert lines[0] == f"Front: {len(small)} designs on {MARE.name}" and len(lines) < 20 and len(repr(small)) < 2500
@@ -674,7 +692,7 @@ DAMAGES = {
     "empty": lambda text: "",
     "not JSON": lambda text: "<html>",
     "another JSON": lambda text: "[1, 2]",
-    "no designs": lambda text: json.dumps(json.loads(text) | {"designs": {}}),
+    "no designs": lambda text: json.dumps(json.loads(text) | {"design": {}}),
     "no message": lambda text: json.dumps({k: v for k, v in json.loads(text).items() if k != "message"}),
     "impossible design": lambda text: text.replace('"wheel_radius_m": [', '"wheel_radius_m": [-'),
     "wrong history": lambda text: json.dumps(json.loads(text) | {"objective_history": [[[1.0]]]}),
@@ -711,7 +729,7 @@ def test_a_file_is_complete_or_absent(tmp_path, monkeypatch):
 
     options = dict(population=4, generations=1, folder=tmp_path)
     with monkeypatch.context() as broken:
-        broken.setattr(studies.os, "replace", full)
+        broken.setattr(ts.os, "replace", full)
         with pytest.raises(OSError, match="no space"):
             rdk.fronts([MARE], **options)
     assert not list(tmp_path.glob("*.json"))
