@@ -131,17 +131,18 @@ def traverse(design, scenario, model, slip, torque_nm, stalled, shape, with_arri
         lane = SimpleNamespace(**{name: value[start:start + block] if np.ndim(value) else value
                                   for name, value in lanes.items()})
         exact = np.asarray(lane.exact_floor) == 1
-        found, log = _march(lane, times, steps, exact.any(), shape == (), with_arrival)
+        width = min(block, size - start) if shape else 1
+        found, log = _march(lane, width, times, steps, exact.any(), shape == (), with_arrival)
         if exact.any() and not exact.all():
-            paper, _ = _march(lane, times, steps, False, False, with_arrival)
+            paper, _ = _march(lane, width, times, steps, False, False, with_arrival)
             found = {name: np.where(exact, value, paper[name]) for name, value in found.items()}
         for name, value in found.items():
             results.setdefault(name, np.empty(size, np.result_type(value)))[start:start + block] = value
     return {name: value.reshape(shape) for name, value in results.items()}, log
 
 
-def _march(lane, times, steps, exact, with_log, with_arrival):
-    """March a block of lanes: every attribute of `lane` is a number or an array with one entry a lane.
+def _march(lane, width, times, steps, exact, with_log, with_arrival):
+    """March a block of lanes: every attribute of `lane` is a number or an array with `width` entries.
 
     The paper takes the sun at the end of each step and drives a step that reaches the floor to its end; `exact` takes
     the sun in the middle of the step and throttles from where the floor is reached, so that the step's length hardly
@@ -165,7 +166,7 @@ def _march(lane, times, steps, exact, with_log, with_arrival):
 
     def charge(load):
         """Stored energy at the end of each step, and the share of the step spent on the floor, short of power."""
-        net = np.empty((len(times), *np.broadcast_shapes((1,), *map(np.shape, vars(lane).values()))))
+        net = np.empty((len(times), width))
         np.subtract(solar, load, out=net)                # for all lanes, also those that differ in the battery only
         deficit = net < 0
         stored = power.march_battery(net, steps[:, None], capacity, soc_initial=lane.soc_initial,
@@ -181,7 +182,7 @@ def _march(lane, times, steps, exact, with_log, with_arrival):
         return stored, on_floor, share
 
     stored, on_floor, share = charge(base_load + duty * mobility)
-    throttled = share > 0
+    throttled = share > 0 if exact else share
     # energies by the trapezoidal rule over the samples, nothing recorded at the start: the last one counts half
     samples = steps if exact else (steps + np.append(steps[1:], 0.0)) / 2
     driven_h, mobility_h = duty * steps.sum(), duty * samples.sum()

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._fields import Record, number
+from ._fields import Record, number, together
 from .sky import Skyline, julian_date
 from .terramechanics import TRANSITIONS, Soil, Wheel
 
@@ -84,7 +84,9 @@ class Design(Record):
     @property
     def wheel(self):
         """The wheel of this design, for `rdk.terramechanics`."""
-        return Wheel(self.wheel_radius_m, self.wheel_width_m, self.grouser_height_m, self.grouser_count)
+        values = dict(radius_m=self.wheel_radius_m, width_m=self.wheel_width_m, grouser_height_m=self.grouser_height_m,
+                      grouser_count=self.grouser_count)
+        return Wheel.trusted(together(**{name: np.shape(value) for name, value in values.items()}), values)
 
 
 @dataclass(frozen=True)

@@ -197,17 +197,17 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
         along = np.where(np.equal(design.wheel_count, 6), 4, 2) * (design.wheel_radius_m + design.grouser_height_m)
         feasible = (~np.asarray(stalled) & (travelled["energy_balance_pct"] >= 0) & (travelled["range_km"] > 0)
                     & (obstacle >= scenario.required_obstacle_height_m))
-    fields = dict(
+    found = dict(
         travelled, total_mass_kg=mass.total_kg, slope_capability_deg=capability, stalled=stalled,
         thermal_survival=hot_survival & cold_survival, feasible=feasible, buried=balance.buried, slip=balance.slip,
         sinkage_m=balance.sinkage_m, wheel_torque_nm=balance.torque_nm, hot_temperature_c=hot, cold_temperature_c=cold,
         obstacle_capability_m=obstacle, ground_pressure_kpa=pressure, sliding=balance.sliding,
         hot_survival=hot_survival, cold_survival=cold_survival, structure_share=mass.chassis_kg / mass.total_kg,
         wheel_gap_m=design.wheelbase_m - along)
-    return Performance(**{name: shaped(value, shape) for name, value in fields.items()}, log=log,
-                       arrival_h=partial(_arrival_h, march, shape),
-                       tip_over_deg=partial(_tip_over, design, stance, shape),
-                       mass=MassBreakdown(**{name: shaped(value, shape) for name, value in mass.numbers().items()}))
+    items = {name: shaped(value, shape) for name, value in mass.numbers().items()}
+    return Performance.trusted(shape, dict(
+        {name: shaped(value, shape) for name, value in found.items()}, mass=MassBreakdown.trusted(shape, items), log=log,
+        arrival_h=partial(_arrival_h, march, shape), tip_over_deg=partial(_tip_over, design, stance, shape)))
 
 
 def mass_of(design, scenario, model):

@@ -21,12 +21,13 @@ def hour_angle_deg(time_h, synodic_day_h=708.734136):
 
 
 def _sun_vector(latitude_deg, hour_angle, declination_deg):
-    """East, north and up components of the direction to the sun."""
+    """East, north and up components of the direction to the sun, and the size of what `up` adds up."""
     lat, H, dec = np.radians(latitude_deg), np.radians(hour_angle), np.radians(declination_deg)
+    along, across = np.sin(lat) * np.sin(dec), np.cos(lat) * np.cos(dec)
     east = -np.cos(dec) * np.sin(H)
     north = np.cos(lat) * np.sin(dec) - np.sin(lat) * np.cos(dec) * np.cos(H)
-    up = np.sin(lat) * np.sin(dec) + np.cos(lat) * np.cos(dec) * np.cos(H)       # eq. sun-elevation
-    return east, north, up
+    up = along + across * np.cos(H)                      # eq. sun-elevation
+    return east, north, up, abs(along) + abs(across)
 
 
 def sun_position(latitude_deg, hour_angle, declination_deg=0.0):
@@ -48,7 +49,7 @@ def sun_position(latitude_deg, hour_angle, declination_deg=0.0):
     >>> f"{elevation:.0f} deg high, {azimuth:.0f} deg"
     '70 deg high, 180 deg'
     """
-    east, north, up = _sun_vector(latitude_deg, hour_angle, declination_deg)
+    east, north, up, _ = _sun_vector(latitude_deg, hour_angle, declination_deg)
     return np.degrees(np.arcsin(np.clip(up, -1, 1))), np.degrees(np.arctan2(east, north)) % 360
 
 
@@ -70,16 +71,14 @@ def incidence_factor(latitude_deg, hour_angle, tilt_deg=0.0, azimuth_deg=180.0, 
     float or ndarray
         Between 0 and 1.
     """
-    east, north, up = _sun_vector(latitude_deg, hour_angle, declination_deg)
+    east, north, up, size = _sun_vector(latitude_deg, hour_angle, declination_deg)
     tilt, azimuth = np.radians(tilt_deg), np.radians(azimuth_deg)
     cos_i = up * np.cos(tilt) + np.sin(tilt) * (north * np.cos(azimuth) + east * np.sin(azimuth))
     facing = np.maximum(cos_i, 0.0)
     if lit is not None:
         return (facing * lit)[()]
     # at a pole the sun circles on the horizon: what counts is the sign, as close to the pole as one likes
-    lat, dec = np.radians(latitude_deg), np.radians(declination_deg)
-    least = ROUNDING * (abs(np.sin(lat) * np.sin(dec)) + abs(np.cos(lat) * np.cos(dec)))
-    return np.where(up > least, facing, 0.0)[()]
+    return np.where(up > ROUNDING * size, facing, 0.0)[()]
 
 
 def panel_power(area_m2, incidence, *, efficiency=0.28, dust_factor=0.9, solar_constant_w_m2=1361.0):
