@@ -206,7 +206,8 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
         wheel_gap_m=design.wheelbase_m - along)
     items = {name: shaped(value, shape) for name, value in mass.numbers().items()}
     return Performance.trusted(shape, dict(
-        {name: shaped(value, shape) for name, value in found.items()}, mass=MassBreakdown.trusted(shape, items), log=log,
+        {name: shaped(value, shape) for name, value in found.items()},
+        mass=MassBreakdown.trusted(shape, items), log=log,
         arrival_h=partial(_arrival_h, march, shape), tip_over_deg=partial(_tip_over, design, stance, shape)))
 
 

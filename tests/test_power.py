@@ -69,12 +69,8 @@ def test_evaluate_sees_the_same_noon():
 def test_the_suns_path_is_symmetric_about_noon(latitude, hour, declination):
     (morning, evening), azimuth = power.sun_position(latitude, np.array([-hour, hour]), declination)
     assert morning == pytest.approx(evening, abs=1e-9)
-    east, north, _ = power._sun_vector(latitude, np.array([-hour, hour]),
-                                       np.array([declination, declination]))
-    np.testing.assert_allclose(east, [east[0], -east[0]], atol=1e-15)               # mirrored at the meridian
-    np.testing.assert_allclose(north[0], north[1], atol=1e-15)
-    if np.hypot(east[0], north[0]) > 1e-6:               # near the zenith the azimuth means nothing
-        assert np.cos(np.radians(azimuth.sum())) == pytest.approx(1, abs=1e-6)
+    if abs(morning) < 89.9:                              # near the zenith the azimuth means nothing
+        assert np.cos(np.radians(azimuth.sum())) == pytest.approx(1, abs=1e-6)      # mirrored at the meridian
 
 
 @quick
