@@ -2,12 +2,13 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterable
 
 import numpy as np
 import pandas as pd
 
 from . import catalog
-from ._fields import check
+from ._fields import check, unknown
 from .design import DESIGN_SPACE, Design, Model
 from .mission import evaluate, mass_of
 from .rules import fronts_at, place
@@ -21,7 +22,7 @@ CUBE = tuple(name for name, v in DESIGN_SPACE.items() if v.kind == "continuous" 
 """The eight variables of the rediscovery distance: continuous, and read by some sub-model."""
 
 
-def unit_cube(designs):
+def unit_cube(designs: Design) -> np.ndarray:
     """Designs as points of the eight-dimensional unit cube of `CUBE`, shape (n, 8)."""
     return np.stack(np.broadcast_arrays(*(np.atleast_1d(place(designs, name)) for name in CUBE)), axis=1)
 
@@ -38,7 +39,7 @@ class Target:
     @classmethod
     def of(cls, name):
         if name not in REDISCOVERED:
-            raise ValueError(f"no rover {name!r} in the check; choose from {', '.join(REDISCOVERED)}")
+            raise unknown("the check has no rover", name, list(REDISCOVERED))
         design, payload = catalog.rover(name), float(catalog.rover_row(name)["payload_mass_kg"])
         scenario = dataclasses.replace(catalog.scenario(REDISCOVERED[name]), payload_mass_kg=payload)
         performance = evaluate(design, scenario)
@@ -52,7 +53,8 @@ class Target:
         return np.linalg.norm(unit_cube(designs) - unit_cube(self.design), axis=1)
 
 
-def rediscover(rovers=tuple(REDISCOVERED), population=60, generations=(16,), seeds=range(5), executor=None):
+def rediscover(rovers: Iterable[str] = tuple(REDISCOVERED), *, population: int = 60, generations: Iterable[int] = (16,),
+               seeds: Iterable[int] = range(5), executor=None) -> pd.DataFrame:
     """Distance of published rovers to the fronts of their missions, under a ceiling of 1.10 times their mass.
 
     Parameters
@@ -103,7 +105,7 @@ def _found(target, generation, fronts):
     return row
 
 
-def baselines(found, count=20000, seed=0):
+def baselines(found: pd.DataFrame, *, count: int = 20000, seed: int = 0) -> pd.DataFrame:
     """What distances chance gives, for the rovers of a rediscovery check.
 
     Parameters
@@ -157,12 +159,10 @@ def _nearest(distances, chances, random, trials=2000):
     return distances[random.integers(len(distances), size=(trials, chances))].min(1)
 
 
-def lighter_than(target, count, seed):
-    """Uniform random designs below a rover's mass ceiling.
+def lighter_than(target: Target, count: int, seed: int) -> Design:
+    """Uniform random designs below a rover's mass ceiling, in the box of what each variable may reach alone.
 
-    Total mass rises with every variable. Each one is therefore bounded by what it may reach with all others
-    at their least; what is drawn in that smaller box and is light enough is uniform in the whole light part
-    of the space.
+    Total mass rises with every variable: what is light enough lies in that box, so it is uniform in the whole space.
     """
     low = {name: v.low for name, v in DESIGN_SPACE.items()}
     bounds = {}

@@ -259,7 +259,7 @@ def test_a_front_without_designs_is_a_row_without_a_distance():
 
 
 def test_rediscovery_refuses_an_unknown_rover():
-    with pytest.raises(ValueError, match="no rover 'Spirit' in the check; choose from Tenacious"):
+    with pytest.raises(ValueError, match="the check has no rover 'Spirit'; choose from Tenacious"):
         rediscovery.rediscover(["Spirit"])
 
 

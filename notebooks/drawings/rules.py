@@ -221,7 +221,7 @@ def frontiers_by_scale(frontiers):
 
 def _without_unit(name):
     """A field's name in words, without the unit at its end."""
-    return re.sub(r"(_(kg|kn|kpa|deg|mm|nm|m2|m|n1|n2|wh|w))+$", "", name).replace("_", " ")
+    return re.sub(r"(_(kg|kn|kpa|deg|rad|mm|nm|m2|m|n1|n2|wh|w|s))+$", "", name).replace("_", " ")
 
 
 def sobol_bars(indices, labels=None, most=9):
