@@ -71,7 +71,6 @@ class Terrain:
 
     # ---- places ------------------------------------------------------------------------------------------------
 
-    @property
     def _axes(self):
         """Unit vectors east, north and up at the centre of the plane."""
         up, east = _vertical(self.latitude_deg, self.longitude_deg), _vertical(0.0, self.longitude_deg + 90)
@@ -83,13 +82,13 @@ class Terrain:
 
     def to_xy(self, latitude_deg, longitude_deg):
         """Plane coordinates x, y (m) of places in degrees."""
-        return self._from_axes(*np.tensordot(self._axes, _vertical(latitude_deg, longitude_deg), 1))
+        return self._from_axes(*np.tensordot(self._axes(), _vertical(latitude_deg, longitude_deg), 1))
 
     def to_latlon(self, x, y):
         """Latitude and east longitude (deg) of plane coordinates in metres."""
         u, v = np.asarray(x, float) / (2 * self.radius_m), np.asarray(y, float) / (2 * self.radius_m)
         square = u * u + v * v
-        p = np.tensordot(self._axes.T, np.array([2 * u, 2 * v, 1 - square]) / (1 + square), 1)
+        p = np.tensordot(self._axes().T, np.array([2 * u, 2 * v, 1 - square]) / (1 + square), 1)
         return np.degrees(np.arcsin(np.clip(p[2], -1, 1))), np.degrees(np.arctan2(p[1], p[0])) % 360
 
     def cell(self, x, y):
@@ -179,7 +178,7 @@ class Terrain:
         for terrain in (self, *beyond):                  # of each map only the stretch that it can add to
             stretch = slice(np.argmax(np.isnan(height).any(axis=0)), np.searchsorted(s, terrain._reach(lat, lon)))
             rays = [np.outer(ahead @ axis, np.sin(arc[stretch])) + (up @ axis) * np.cos(arc[stretch])
-                    for axis in terrain._axes]
+                    for axis in terrain._axes()]
             known = height[:, stretch]
             height[:, stretch] = np.where(np.isnan(known), terrain.at(*terrain._from_axes(*rays)), known)
         r, eye = self.radius_m + height, self.radius_m + ground + height_m
@@ -209,10 +208,6 @@ def read(path, *, scale=None, offset=None, west_m=None, north_m=None, step_m=Non
 
     Raises
     ------
-    FileNotFoundError
-        If the file or its label is missing.
-    ImportError
-        For a GeoTIFF without `tifffile`.
     ValueError
         If the file cannot be placed: another projection, another body, no geometry.
     """
@@ -287,7 +282,7 @@ def _pds(path):
     if raw.size != rows * columns:
         raise ValueError(f"{found['.img'].name} holds {raw.size} samples; its label says {rows} x {columns}")
     height = raw.reshape(rows, columns).astype(float)
-    if "MISSING_CONSTANT" in label:
+    if re.match(r"[-+.\d]+(E[-+]?\d+)?$", label.get("MISSING_CONSTANT", ""), re.I):      # not N/A, nor a bit pattern
         height[height == number("MISSING_CONSTANT")] = np.nan
     unit = 1000 if word("UNIT").upper().startswith("K") else 1
     height = (height * number("SCALING_FACTOR", 1) + number("OFFSET", 0)) * unit

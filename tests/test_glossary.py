@@ -15,8 +15,8 @@ import pytest
 import rdk
 import exercises as course
 from rdk import _march, _contact as contact
-from rdk import catalog, design, explain, mass, mission, power, report, sampling
-from rdk import terramechanics, thermal, tradespace, validation
+from rdk import catalog, design, explain, mass, mission, power, report, route, sampling, sky
+from rdk import terrain, terramechanics, thermal, tradespace, validation
 
 REPO = Path(__file__).parents[1]
 TEXT = (REPO / "notebooks/glossary.md").read_text(encoding="utf-8")
@@ -25,14 +25,15 @@ CONSTANTS = {row["name"]: row for row in csv.DictReader((REPO / "data/constants.
 RECORDS = {"Design": rdk.Design, "Scenario": rdk.Scenario, "Problem": design.Problem, "Soil": rdk.Soil,
            "Wheel": rdk.Wheel,
            "Model": rdk.Model, "Performance": rdk.Performance, "MassBreakdown": mass.MassBreakdown,
-           "TraverseLog": mission.TraverseLog, "Front": tradespace.Front}
+           "TraverseLog": mission.TraverseLog, "Front": tradespace.Front, "Skyline": sky.Skyline,
+           "Terrain": terrain.Terrain, "Route": route.Route, "Way": route.Way, "March": route.March}
 MODULES = (catalog, contact, course, course.judging, design, explain, mass, mission, power, report,
-           sampling, terramechanics, thermal, tradespace, validation)
+           route, sampling, sky, terrain, terramechanics, thermal, tradespace, validation)
 SUFFIXES = {
     "_m": "m", "_mm": "mm", "_km": "km", "_m2": "m2", "_kg": "kg", "_n": "N", "_nm": "N m", "_pa": "Pa",
     "_kpa": "kPa",
     "_deg": "deg", "_rad": "rad", "_h": "h", "_earth_days": "Earth days", "_w": "W", "_wh": "Wh", "_k": "K",
-    "_c": "degC",
+    "_c": "degC", "_j": "J",
     "_pct": "%", "_m_s": "m/s", "_rad_s": "rad s-1", "_m_s2": "m s-2", "_w_m2": "W m-2", "_kg_m2": "kg m-2",
     "_kg_m3": "kg m-3", "_kg_nm": "kg N-1 m-1", "_kg_w": "kg W-1", "_wh_kg": "Wh kg-1",
     "_kn_m_n1": "kN/m^(n+1)",

@@ -21,3 +21,5 @@ from .rules import (  # noqa: F401
     family_rules, front_points, frontiers_by_scale, ledger_filter, ledger_html, ledger_text,
     ledger_verdicts, pull_intervals, rediscovery_distances, rocker_bogie_share, sobol_bars,
     variables_on_fronts, verdict)
+from .site import (  # noqa: F401
+    line_of_sight, marches, polar_sun, shares_of_light, skyline_and_sun, slope_and_tilt, ways_on_a_map)

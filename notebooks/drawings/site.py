@@ -25,7 +25,7 @@ def polar_sun():
     left.text(1.65, 0.12, "sunlight", ha="center", fontsize=9)
     east = np.array([-axis[1], axis[0]])                 # along the ground at the pole
     left.plot(*(axis[:, None] + np.outer(east, [-0.7, 0.9])), color=BLUE, lw=1.4)
-    left.text(*(axis + 1.0 * east), "horizon", fontsize=9, color=BLUE)
+    left.text(-1.45, -1.12, "horizon", fontsize=9, color=BLUE)
     left.set(xlim=(-1.5, 2.4), ylim=(-1.6, 1.5), aspect="equal", title="from the side (tilt drawn 8 times too large)")
     left.axis("off")
     azimuth = np.linspace(0, 360, 200)
@@ -118,7 +118,7 @@ def shares_of_light(labels, shares, heights_m):
                 fillstyle="none" if k == 1 else "full")
     ax.set(yticks=rows, yticklabels=labels, xlim=(-2, 100), xlabel="lit, 19 years (%)")
     ax.invert_yaxis()
-    ax.legend(loc="lower left", fontsize=9)
+    ax.legend(loc="upper left", fontsize=9)
     return figure
 
 
