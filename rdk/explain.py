@@ -9,6 +9,7 @@ import numpy as np
 from .design import DESIGN_SPACE, Model, Scenario
 from .mission import evaluate
 from .sampling import replaced
+from .sky import Skyline
 from .terramechanics import Soil
 
 
@@ -153,7 +154,11 @@ def as_python(design, scenario, model, *calls, baseline=None):
 
 
 def _built(name, kind, values, *more):
-    """Source of `name = rdk.kind(...)`; infinity has no literal in Python."""
-    lines = [f"    {field}={'float(%r)' % str(value) if value in (np.inf, -np.inf) else repr(value)},"
-             for field, value in values.items()]
+    """Source of `name = rdk.kind(...)`; infinity has no literal in Python, nor has a skyline."""
+    def literal(value):
+        if isinstance(value, Skyline):
+            return f"rdk.sky.Skyline({value.azimuth_deg.tolist()}, {value.elevation_deg.tolist()})"
+        return f"float({str(value)!r})" if value in (np.inf, -np.inf) else repr(value)
+
+    lines = [f"    {field}={literal(value)}," for field, value in values.items()]
     return "\n".join([f"{name} = rdk.{kind}(", *lines, *more, ")"]) if lines else f"{name} = rdk.{kind}()"

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rdk
-from rdk import power, sky
+from rdk import catalog, explain, power, sky
 from rdk.sky import Skyline
 
 DATA = Path(__file__).parents[1] / "data"
@@ -310,3 +310,11 @@ def test_scenarios_take_dates_and_skylines():
             replace(POLAR, start_utc=wrong)
     with pytest.raises(ValueError, match="skyline must be a Skyline"):
         replace(POLAR, skyline="shackleton_rim")
+
+
+def test_a_mission_at_a_site_can_be_kept_and_written_as_python():
+    mission = at_site("shackleton_rim", start_utc="2026-10-01")
+    assert catalog.from_json(catalog.to_json(ROVER, mission)) == (ROVER, mission)
+    found = {}
+    exec(explain.as_python(ROVER, mission, rdk.Model(), ""), found)
+    assert found["mission"].replace(problem=mission.problem) == mission
