@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ._fields import check, together
+from .terramechanics import Soil, Wheel, wheel_forces
 
 Values = float | np.ndarray
 LEAST_BODY_HEIGHT_M = 0.05                               # a warm box holds at least the height of a cell or a board
@@ -34,7 +35,7 @@ class TipOver(NamedTuple):
 
 
 class Stance(NamedTuple):
-    """Track, height of the belly and height of the centre of mass above the ground, in metres."""
+    """Track, height of the belly (less the sinkage: the clearance) and of the centre of mass above ground, in metres."""
     track_m: Values
     belly_height_m: Values
     centre_height_m: Values
@@ -165,3 +166,31 @@ def stance(total_mass_kg: Values, wheels_mass_kg: Values, wheel_radius_m: Values
     top = np.maximum(total_mass_kg / (envelope_density_kg_m3 * footprint), belly + LEAST_BODY_HEIGHT_M)
     share = wheels_mass_kg / np.asarray(total_mass_kg)
     return Stance(track, belly[()], (share * radius + (1 - share) * (belly + top) / 2)[()])
+
+
+def static_pressure_kpa(wheel: Wheel, soil: Soil, load_n: Values) -> Values:
+    """Mean vertical pressure under a wheel at rest: its load over width and chord, W / (2 b r sin(theta_s)).
+
+    The arc theta_s on either side is that of the imposed-arc kernel, which gets sinkage at rest right where it can be
+    checked; `Performance.ground_pressure_kpa` is that of the kernel in use, on the move.
+
+    Parameters
+    ----------
+    wheel : Wheel
+    soil : Soil
+    load_n : float or ndarray
+        Positive.
+
+    Returns
+    -------
+    float or ndarray
+        In kPa; NaN where the wheel is buried.
+
+    Examples
+    --------
+    >>> import rdk
+    >>> f"{static_pressure_kpa(rdk.rover('Rashid-1').wheel, rdk.soil('apollo-nominal'), 4.06):.1f} kPa"
+    '1.2 kPa'
+    """
+    angle = wheel_forces(wheel, soil, load_n, 0.0, kernel="imposed-arc").entry_angle_rad
+    return load_n / (2 * wheel.width_m * wheel.radius_m * np.sin(angle)) / 1000

@@ -141,7 +141,8 @@ def interval_coverage(*, draws: int = DRAWS, seed: int = 0, level: float = 0.9, 
     import pandas as pd
     level = check("level", level, above=0, below=1, scalar=True)
     points = pd.concat([catalog.table("single_wheel.csv").merge(catalog.table("soils.csv"), on="soil"),
-                        catalog.table("single_wheel_more.csv")]).query("slip > 0").reset_index(drop=True)
+                        catalog.table("single_wheel_more.csv").dropna(subset="drawbar_pull_n")]).query("slip > 0")
+    points = points.reset_index(drop=True)
     for name in experiments:
         if name not in set(points.experiment):
             raise unknown("experiments: no single-wheel test", name, list(points.experiment.unique()))

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from rdk.stability import axle_loads, stance, tip_over
+import rdk
+from rdk.stability import axle_loads, stance, static_pressure_kpa, tip_over
 
 RANDOM = np.random.default_rng(5)
 N = 400
@@ -109,3 +110,24 @@ def test_stance_of_published_sizes():
     assert np.all(np.diff(heavy.centre_height_m) > 0)
     flat = stance(1.0, 0.5, 0.2, 0.1, 1.2, 6)                        # far too light for its envelope: the least body
     assert_allclose(flat.centre_height_m, 0.5 * 0.2 + 0.5 * (0.4 + 0.025), rtol=1e-12)
+
+
+def test_static_pressure_of_rovers():
+    """Lunar loads on apollo-nominal, from the published masses: figures found by independent code."""
+    found = {name: static_pressure_kpa(rdk.rover(name).wheel, rdk.soil("apollo-nominal"), kg * 1.625 / count)
+             for name, kg, count in (("Rashid-1", 10, 4), ("Tenacious", 5, 4), ("Pragyan", 26, 6), ("Yutu-2", 135, 6))}
+    flight = rdk.Wheel(0.085, 0.06, 0.01, 12)            # MoonRanger's
+    found["MoonRanger"] = static_pressure_kpa(flight, rdk.soil("apollo-nominal"), 18 * 1.625 / 4)
+    assert {name: round(float(p), 1) for name, p in found.items()} == {
+        "Rashid-1": 1.2, "Tenacious": 1.5, "Pragyan": 2.0, "Yutu-2": 3.0, "MoonRanger": 2.3}
+
+
+def test_static_pressure_is_the_load_over_the_arc_that_carries_it():
+    wheel, soil, load = rdk.Wheel(0.1, [0.08, 0.16], 0, 0), rdk.soil("apollo-nominal"), np.array([[2.0], [8.0]])
+    pressure = static_pressure_kpa(wheel, soil, load)
+    assert pressure.shape == (2, 2) and np.all(np.diff(pressure, axis=0) > 0) and np.all(np.diff(pressure, axis=1) < 0)
+    # Bekker's plate is the limit of a shallow arc: n = 1, load = 2 b r^2 k int (cos t - cos theta) cos t dt
+    angle = np.arcsin(2.0 / (2000 * 0.08 * 0.1 * pressure[0, 0]))
+    stiff = 1000 * (soil.cohesive_modulus_kn_m_n1 / 0.08 + soil.frictional_modulus_kn_m_n2)
+    integral = angle / 2 - np.sin(2 * angle) / 4
+    assert_allclose(2 * 0.08 * 0.1**2 * stiff * integral, 2.0, rtol=1e-6)        # n = 1: the integral is elementary
