@@ -54,7 +54,7 @@ def published_facts() -> pd.DataFrame:
     more = catalog.table("rovers_more.csv")
     count = more.drop_duplicates("rover").assign(field="wheel_count", status="published", unit="1",
                                                  value=lambda t: t.architecture.map(WHEELS)).dropna(subset="value")
-    more = pd.concat([count, more[more.field != "wheel_count"]])[["rover", "in_class", "field", "value", "unit", "status"]]
+    more = pd.concat([count, more[more.field != "wheel_count"]])[[*paper.columns[:4], "unit", "status"]]
     facts = pd.concat([paper.assign(table="rovers.csv"), more.assign(table="rovers_more.csv")], ignore_index=True)
     mass = facts[facts.field == "total_mass_kg"].set_index(["rover", "table"]).value
     either = mass.groupby("rover").last()
@@ -89,8 +89,9 @@ def mass_intervals(*, draws: int = DRAWS, seed: int = 0, level: float = 0.9, fix
     level = check("level", level, above=0, below=1, scalar=True)
     facts = published_facts()
     latest = facts.drop_duplicates(["rover", "field"], keep="last")                      # the later table knows better
-    tracked = catalog.table("rovers_more.csv").query("architecture not in @WHEELS").rover
-    listed = latest.query("field == 'total_mass_kg' and rover not in @tracked").sort_values("value", kind="stable")
+    more = catalog.table("rovers_more.csv")
+    tracked = more.rover[~more.architecture.isin(WHEELS)]
+    listed = latest[(latest.field == "total_mass_kg") & ~latest.rover.isin(tracked)].sort_values("value", kind="stable")
     rovers, mass = listed.rover.to_numpy(), listed.value.to_numpy()
     table = [row for row in catalog.rows("uncertainties.csv") if row["name"] in MASS_COEFFICIENTS]
     points = qmc.Sobol(len(GROWING) + 2 + len(uncertain_names(table)), rng=np.random.default_rng(seed)).random_base2(
@@ -117,7 +118,8 @@ def mass_intervals(*, draws: int = DRAWS, seed: int = 0, level: float = 0.9, fix
         for name in MASS_COEFFICIENTS}).total_kg
     low, median, high = np.quantile(total, [(1 - level) / 2, 0.5, (1 + level) / 2], axis=0)
     return pd.DataFrame(dict(
-        rover=rovers, in_class=(mass >= 5) & (mass <= 50), table=facts.groupby("rover").table.first()[rovers].to_numpy(),
+        rover=rovers, in_class=(mass >= 5) & (mass <= 50),
+        table=facts.groupby("rover").table.first()[rovers].to_numpy(),
         published_mass_kg=mass, known=known, low_kg=low, median_kg=median, high_kg=high,
         inside=(mass >= low) & (mass <= high), share_below=(total < mass).mean(0)))
 

@@ -35,7 +35,7 @@ class TipOver(NamedTuple):
 
 
 class Stance(NamedTuple):
-    """Track, height of the belly (less the sinkage: the clearance) and of the centre of mass above ground, in metres."""
+    """Track, height of the belly (less the sinkage: the clearance) and of the centre of mass, in metres."""
     track_m: Values
     belly_height_m: Values
     centre_height_m: Values

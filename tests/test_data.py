@@ -14,7 +14,8 @@ from rdk import stability
 DATA = Path(__file__).parents[1] / "data"
 ROWS = {"soils.csv": 11, "scenarios.csv": 14, "rovers.csv": 13, "flown.csv": 2, "single_wheel.csv": 27,
         "rovers_more.csv": 65, "constants.csv": 70, "paper_targets.csv": 69, "studies.csv": 4,
-        "single_wheel_more.csv": 71, "uncertainties.csv": 22, "skyline_sites.csv": 48, "skylines.csv": 360, "published_light.csv": 6,
+        "single_wheel_more.csv": 71, "uncertainties.csv": 22, "skyline_sites.csv": 48, "skylines.csv": 360,
+        "published_light.csv": 6,
         "subsolar_points.csv": 21, "sun_horizons_2024.csv": 96, "ridge_route.csv": 136,
         "ridge_route_skylines.csv": 180, "ridge_light_2026.csv": 61, "slope_histograms.csv": 45}
 UNITS = {"_deg": "deg", "_kn_m_n1": "kN/m^(n+1)", "_kn_m_n2": "kN/m^(n+2)", "_kpa": "kPa", "_mm": "mm",
@@ -182,8 +183,8 @@ def test_rows_agree_with_themselves():
 def test_facts_of_further_rovers_have_one_value_each_and_the_unit_of_their_name():
     rows = TABLES["rovers_more.csv"]
     assert len({(row["rover"], row["field"]) for row in rows}) == len(rows)
-    suffixes = {"_kg": "kg", "_m": "m", "_deg": "deg", "_m_s": "m/s", "_kpa": "kPa", "_nm": "N m", "_wh_per_km": "Wh/km",
-                "_count": "1", "_fraction": "1"}
+    suffixes = {"_kg": "kg", "_m": "m", "_deg": "deg", "_m_s": "m/s", "_kpa": "kPa", "_nm": "N m",
+                "_wh_per_km": "Wh/km", "_count": "1", "_fraction": "1"}
     own = {row["rover"]: row for row in TABLES["rovers.csv"]}
     for row in rows:
         end = max((s for s in suffixes if row["field"].endswith(s)), key=len)
