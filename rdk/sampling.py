@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ._fields import Shown, check, unknown
+from ._fields import Shown, check, require, unknown
 from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import Performance, evaluate
 from .terramechanics import Soil
@@ -144,7 +144,9 @@ class Sweep(Shown):
 
 
 def _single(**records):
-    """Refuse records that hold arrays."""
+    """Refuse what is no record, and records that hold arrays."""
+    kinds = {"scenario": Scenario, "model": Model}
+    require(**{name: (record, kinds.get(name, Design)) for name, record in records.items()})
     for name, record in records.items():
         if record.shape:
             raise ValueError(f"{name} must be a single one; got arrays of shape {record.shape}")
@@ -354,6 +356,7 @@ def intervals(design: Design, scenario: Scenario, *, draws: int = DRAWS, seed: i
     >>> bool(0 < found.share([("range_km", ">=", 30), ("slope_capability_deg", ">=", 15)]) < 1)
     True
     """
+    require(design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     level = check("level", level, above=0, below=1, scalar=True)
     if scenario.shape or model.shape or len(design.shape) > 1:
         raise ValueError("intervals takes one design or a flat population, a single scenario and a single model; got "

@@ -369,3 +369,16 @@ def test_the_kernel_brings_its_own_transition():
     assert rdk.Model(kernel="imposed-arc", transition_c2=0.1).transition == (0.18, 0.1)
     with pytest.raises(ValueError, match="kernel must be one of 'paper', 'imposed-arc'; got 'papers'"):
         rdk.Model(kernel="papers")
+
+
+@pytest.mark.parametrize("call, message", [
+    (lambda: rdk.sweep("Rashid-1", SCENARIO, {"slope_deg": [1]}), r"design .*rdk.rover\('Rashid-1'\); got 'Rashid-1'"),
+    (lambda: rdk.sweep(DESIGN, "mare", {"slope_deg": [1]}), r"scenario .*rdk.scenario\(.*\); got 'mare'"),
+    (lambda: rdk.intervals("Rashid-1", SCENARIO), r"design .*rdk.rover"),
+    (lambda: rdk.intervals(DESIGN, "mare"), r"scenario .*rdk.scenario"),
+    (lambda: rdk.attribution(DESIGN, "Pragyan", SCENARIO), r"baseline .*rdk.rover"),
+    (lambda: rdk.evaluate("Rashid-1", SCENARIO), r"design .*rdk.rover"),
+    (lambda: rdk.pareto_front("mare"), r"scenario .*rdk.scenario")], ids=range(7))
+def test_a_name_where_a_record_is_due_is_answered_with_how_to_get_one(call, message):
+    with pytest.raises(TypeError, match=message):
+        call()
