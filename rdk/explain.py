@@ -74,8 +74,9 @@ def binding(design, scenario, performance, model=Model()):
     if p.log is not None and p.log.throttled.any():
         detail += f"; in {100 * p.log.throttled.mean():.0f} % of the hours the pack is empty and sunlight alone decides"
     return Binding(key, {
-        "hub speed": f"Hub speed binds: sunlight would pay for {p.energy_balance_speed_m_s:.1f} m/s, the hub turns for "
-                     f"{100 * p.cruise_speed_m_s:.1f} cm/s at most.",
+        "hub speed": "Hub speed binds: sunlight would pay for " + (
+            f"{p.energy_balance_speed_m_s:.1f} m/s" if p.energy_balance_speed_m_s < 10 else "far more")
+            + f", the hub turns for {100 * p.cruise_speed_m_s:.1f} cm/s at most.",
         "sun": f"Sunlight binds: what the array yields above avionics and payload pays for "
                f"{100 * p.cruise_speed_m_s:.1f} cm/s.",
         "battery": f"The battery binds: it falls to {100 * p.minimum_soc:.0f} %, and driving stops."}[key], detail + ".")
@@ -91,6 +92,78 @@ def _gains(design, scenario, performance, model):
     *changed, model = replaced(design, dataclasses.replace(scenario, traverse_limit_km=np.inf), model, lanes)
     ratio = np.maximum(evaluate(*changed, model=model).range_km, 1e-9) / max(performance.range_km, 1e-9)
     return dict(zip(LEVERS, np.minimum(100 * (np.where(factors > 1, ratio, 1 / ratio) - 1), 999.0).tolist()))
+
+
+def verdict(design, scenario, performance, model=Model()):
+    """Whether a single design does its mission, in one sentence, and whether it does.
+
+    Parameters
+    ----------
+    design, scenario, performance, model
+        As for `binding`; the scenario's constraints count as well.
+
+    Returns
+    -------
+    met : bool
+    sentence : str
+    """
+    p, limit = performance, scenario.traverse_limit_km
+    if p.buried:
+        drive = "Sinks: the soil cannot carry it"
+    elif p.stalled and p.wheel_torque_nm > design.peak_wheel_torque_nm:
+        drive = f"Does not drive: {scenario.slope_deg:g}° is too steep for its hubs"
+    elif p.stalled:
+        drive = f"Does not drive: its wheels slip on {scenario.slope_deg:g}°"
+    elif p.range_km <= 0:
+        drive = "Does not drive: no power or no time for it"
+    elif p.range_km >= limit:
+        days = scenario.duration_earth_days
+        hour = np.inf if p.log is None else p.log.time_h[np.argmax(p.log.distance_km >= limit * (1 - 1e-12))]
+        spare = f" on day {hour / 24:.1f} of {days:g}" if np.isfinite(hour) else ""
+        drive = f"Drives the whole route of {limit:g} km{spare}"
+    else:
+        drive = f"Drives {p.range_km:.3g} km" if np.isinf(limit) else f"Drives {p.range_km:.3g} of {limit:g} km"
+    bad = [words for words, holds in (
+        ("freezes at night", p.cold_temperature_c >= model.operating_temperature_min_c),
+        ("overheats at noon", p.hot_temperature_c <= model.operating_temperature_max_c),
+        ("spends more energy than it gains", p.energy_balance_pct >= 0 or p.range_km <= 0),
+        (f"cannot climb a step of {1000 * scenario.required_obstacle_height_m:.0f} mm",
+         p.obstacle_capability_m >= scenario.required_obstacle_height_m)) if not holds]
+    missed = [words for metric, sign, least in scenario.problem.constraints for words, value in
+              [(f"misses {metric.rsplit('_', 1)[0].replace('_', ' ')} {sign} {least:g}", float(getattr(p, metric)))]
+              if not (value >= least if sign == ">=" else value <= least) and not (metric == "range_km" and value <= 0)]
+    words = [drive, *bad, *missed]
+    return bool(p.range_km > 0 and not bad and not missed), ", ".join(words[:-1]) + ", and " * (len(words) > 1) + words[-1] + "."
+
+
+def levers(design, scenario, performance, key, model=Model()):
+    """What 10 % more of each lever brings against what binds: (field, words, gain, unit) by falling gain.
+
+    `key` is that of `binding`. The gain is in range, in slope capability where traction binds, in torque to spare
+    where torque does, in mean sunlight where the array does not feed the avionics.
+    """
+    if key in ("duty", "range limit"):
+        return []
+    names, metric, unit = {
+        "traction": (("wheel_radius_m", "wheel_width_m", "grouser_height_m"), "slope_capability_deg", "°"),
+        "soil": (("wheel_radius_m", "wheel_width_m"), "slope_capability_deg", "°"),
+        "torque": (("peak_wheel_torque_nm", "wheel_radius_m"), "wheel_torque_nm", "N m")}.get(
+            key, ((*LEVERS.values(), "wheel_radius_m"), "range_km", "km"))
+    if key == "sun" and performance.range_km <= 0:
+        names, metric, unit = ("solar_area_m2",), "average_solar_power_w", "W"
+    now = {**design.numbers(), **model.numbers()}
+    spans = [DESIGN_SPACE[name].high if name in DESIGN_SPACE else np.inf for name in names]
+    more = [min(1.1 * now[name], high) for name, high in zip(names, spans)]
+    lanes = {name: np.where(np.arange(len(names)) == i, more[i], now[name]) for i, name in enumerate(names)}
+    free = dataclasses.replace(scenario, traverse_limit_km=np.inf)
+    *changed, model = replaced(design, free, model, lanes)
+    found = getattr(evaluate(*changed, model=model), metric) - getattr(performance, metric)
+    if key == "torque":                                  # to spare: what the hub gives less what the wheel takes
+        found = np.array([m - now[n] if n == "peak_wheel_torque_nm" else 0.0 for n, m in zip(names, more)]) - found
+    words = {**{f: w for w, f in LEVERS.items()}, "solar_area_m2": "array", "wheel_radius_m": "wheel radius",
+             "wheel_width_m": "wheel width", "grouser_height_m": "grouser height", "peak_wheel_torque_nm": "hub torque"}
+    rows = [(name, words[name], float(np.nan_to_num(gain)), unit) for name, gain, m in zip(names, found, more) if m > now[name]]
+    return sorted(rows, key=lambda lever: -lever[2])
 
 
 def limits(design, scenario, performance, model=Model()):
@@ -144,11 +217,16 @@ def as_python(design, scenario, model, *calls, baseline=None):
         Source text that runs as it stands.
     """
     changed = {f.name: getattr(model, f.name) for f in dataclasses.fields(Model) if getattr(model, f.name) != f.default}
-    mission = {f.name: getattr(scenario, f.name) for f in dataclasses.fields(Scenario) if f.name not in ("soil", "problem")}
+    mission = {f.name: getattr(scenario, f.name) for f in dataclasses.fields(Scenario)
+               if f.name not in ("soil", "problem", "skyline") and getattr(scenario, f.name) != f.default}
+    more = ["    soil=soil,"]
+    if scenario.skyline is not None:
+        sky = scenario.skyline
+        more.append(f"    skyline=rdk.sky.Skyline({sky.azimuth_deg.tolist()!r}, {sky.elevation_deg.tolist()!r}),")
     soil = {f.name: getattr(scenario.soil, f.name) for f in dataclasses.fields(Soil)}
     rovers = {"design": design} | ({} if baseline is None else {"baseline": baseline})
     parts = [_built(name, "Design", {n: getattr(rover, n) for n in DESIGN_SPACE}) for name, rover in rovers.items()]
-    parts += [_built("soil", "Soil", soil), _built("mission", "Scenario", mission, "    soil=soil,"),
+    parts += [_built("soil", "Soil", soil), _built("mission", "Scenario", mission, *more),
               _built("model", "Model", changed)]
     return "\n".join(["import rdk", "", *parts, *calls, ""])
 

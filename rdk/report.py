@@ -5,6 +5,7 @@ The page embeds its pictures, needs no network and prints on one A4 page.
 from __future__ import annotations
 
 import base64
+import functools
 import html as html_module
 import os
 import re
@@ -14,10 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import catalog, explain
-from .explorer import pictures
-from .design import DESIGN_SPACE, Model
+from . import catalog, explain, pictures
+from .design import DESIGN_SPACE, Design, Model
 from .mission import evaluate
+from .rover_picture import rover_picture
 from .sampling import attribution, intervals, uncertain_inputs
 from .tradespace import posed
 
@@ -31,12 +32,12 @@ td:first-child, th:first-child { text-align: left } th { border-bottom: 0.3mm so
 tr.missed td { font-weight: bold } .verdict { border-left: 1.2mm solid #0072B2; padding-left: 2mm }
 .verdict.missed { border-color: #D55E00 } .small { font-size: 7.5pt }
 .columns { display: grid; grid-template-columns: 1fr 1fr; gap: 1mm 5mm }
-.columns img { width: 100%; height: auto } .wide { grid-template-columns: 42fr 58fr }
+.columns svg { width: 100%; height: auto } .wide { grid-template-columns: 24fr 34fr 42fr }
 @media screen { body { padding: 6mm } }
 @media print { .screen { display: none } }
 """
 _UNITS = re.compile("(_(kg|kn|m|m2|n1|n2|nm|w|wh|mm|deg|kpa))+$")
-SIZE, SHARP = (5.6, 3.3), 150                            # inches on the page's grid, and dots an inch
+SIZE = 470, 215                                         # of a picture, in pixels of its own
 
 
 class Requirement(NamedTuple):
@@ -60,8 +61,8 @@ class Requirement(NamedTuple):
         """The demand, in words."""
         if self.metric == "feasible":
             return "drives the mission"
-        name, _, unit = pictures.label(self.metric).partition(" (")
-        return f"{name} {'≥' if self.sign == '>=' else '≤'} {self.limit:g} {unit.rstrip(')')}".rstrip()
+        name, unit = pictures.label(self.metric)
+        return f"{name} {'≥' if self.sign == '>=' else '≤'} {self.limit:g} {unit}".rstrip()
 
 
 def requirements(design, scenario, draws=400, seed=0, model=Model()):
@@ -93,6 +94,20 @@ def requirements(design, scenario, draws=400, seed=0, model=Model()):
     return [_requirement(metric, sign, limit, found, inputs) for metric, sign, limit in demands]
 
 
+def joint_odds(design, scenario, *, draws=400, seed=0, model=Model()):
+    """Share of the Monte-Carlo draws in which a single design drives and meets every demand of the mission at once."""
+    wanted = [("feasible", ">=", 1), *posed(scenario)[1].constraints]
+    return float(intervals(design, scenario, draws=draws, seed=seed, model=model).share(wanted))
+
+
+@functools.cache
+def published():
+    """Names of the published rovers, and their designs as one population."""
+    names = catalog.rover_names()
+    rovers = [catalog.rover(name) for name in names]
+    return names, Design(**{name: np.array([getattr(rover, name) for rover in rovers]) for name in DESIGN_SPACE})
+
+
 def _requirement(metric, sign, limit, found, inputs):
     from scipy.stats import rankdata                     # slow to load
     values = np.asarray(getattr(found.draws, metric), float)
@@ -110,7 +125,7 @@ def _requirement(metric, sign, limit, found, inputs):
 
 
 def report(design, scenario, title, notes="", *, front=None, baseline=None, baseline_name="the baseline",
-           why="total_mass_kg", bounds=None, model=Model(), draws=400):
+           why="total_mass_kg", bounds=None, candidates=None, model=Model(), draws=400):
     """A one-page report on a design, as the text of an HTML file.
 
     Parameters
@@ -131,6 +146,8 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
         The metric whose difference is attributed.
     bounds : dict of str to (float, float), optional
         Limits of design variables that the project sets, in place of those in DESIGN_SPACE.
+    candidates : dict of str to Design, optional
+        Other designs, shown beside this one.
     model : Model
     draws : int
         Of the Monte-Carlo intervals.
@@ -155,7 +172,7 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
         raise ValueError(f"title must be a text; got {title!r}")
     demands = requirements(design, scenario, draws, model=model)
     result = evaluate(design, scenario, model=model)
-    names, fleet = pictures.published()
+    names, fleet = published()
     rovers = evaluate(fleet, scenario, model=model)
     if baseline is None:
         nearest = int(np.abs(np.log(rovers.total_mass_kg / result.total_mass_kg)).argmin())
@@ -165,23 +182,25 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
         raise ValueError(f"why: no metric {why!r}; choose from {', '.join(shares.contributions)}")
     drawn = [
         _on_front(front, result) if front is not None and len(front) else
-        _picture(pictures.among_rovers, result, (rovers.total_mass_kg, rovers.range_km, names)),
-        _picture(pictures.mass, result),
-        _picture(pictures.log, result, scenario),
-        _picture(pictures.why, why, shares.contributions[why], getattr(shares.baseline_performance, why),
-                 getattr(shares.performance, why), baseline_name)]
+        pictures.fleet(result, (rovers.total_mass_kg, rovers.range_km, names), SIZE),
+        pictures.mass(result, SIZE), pictures.log(result, scenario, model.soc_initial, SIZE),
+        pictures.why(why, [variable.label for variable in DESIGN_SPACE.values()], shares.contributions[why],
+                     getattr(shares.baseline_performance, why), getattr(shares.performance, why), baseline_name, SIZE)]
+    odds = joint_odds(design, scenario, draws=draws, model=model)
     missed = [d.words for d in demands if not d.met]
     verdict = f"Misses {len(missed)} of {len(demands)} demands: {'; '.join(missed)}." if missed else (
         f"Meets all {len(demands)} demands of the mission.")
+    verdict += f" All hold at once in {100 * odds:.0f} % of the draws."
     binds = explain.binding(design, scenario, result, model).sentence
     return "\n".join([
         "<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8">', f"<title>{_text(title)}</title>",
         f"<style>{STYLE}</style></head><body>", f"<h1>{_text(title)}</h1>",
         f"<p>{_text(_mission_words(scenario))}</p>",
         f'<p class="verdict{" missed" * bool(missed)}"><b>{_text(verdict)}</b> {_text(binds)}</p>',
-        '<div class="columns wide"><div>', "<h2>Design</h2>", _design_table(design, bounds),
+        '<div class="columns wide"><div>', rover_picture(design, result, scenario, width=250), "</div><div>", "<h2>Design</h2>", _design_table(design, bounds),
         "</div><div>", "<h2>Demands</h2>", _demand_table(demands),
         "<h2>Risks</h2>", *(f"<p>{_text(words)}</p>" for words in _risks(demands)), "</div></div>",
+        *_side_by_side({"this design": design, **(candidates or {})}, scenario, draws, model),
         '<div class="columns">', *drawn, "</div>",
         *(["<h2>Notes</h2>"] if notes.strip() else []),
         *(f"<p>{_text(part)}</p>" for part in notes.split("\n\n") if part.strip()),
@@ -242,23 +261,28 @@ def _text(words):
     return html_module.escape(str(words), quote=False)
 
 
-def _picture(draw, *args):
-    figure = pictures.blank(SIZE, SHARP)
-    return pictures.html(figure, draw(figure, *args))
-
-
 def _on_front(front, result):
-    """The design on the front: mass against the other objective that spreads most."""
+    """The design on the front: mass against the other objective that spreads most, coloured by the next."""
     def spread(name):
         values = np.asarray(getattr(front.performance, name), float)
         return np.ptp(values) / max(np.abs(values).max(), 1e-12)
 
-    up = max((name for name in front.problem.objectives if name != "total_mass_kg"), key=spread,
-             default="range_km")
-    axes = ("total_mass_kg", up)
-    return _picture(pictures.front, *(getattr(front.performance, name) for name in axes), axes, None,
-                    tuple(getattr(result, name) for name in axes), None,
-                    "front of the mission, and this design")
+    others = sorted((name for name in front.problem.objectives if name != "total_mass_kg"), key=spread, reverse=True)
+    names = ["total_mass_kg", *others, "range_km", "slope_capability_deg"][:3]
+    return pictures.front(*(np.asarray(getattr(front.performance, name), float) for name in names), names,
+                          [float(getattr(result, name)) for name in names], SIZE, title=f"Front of {len(front)} designs")
+
+
+def _side_by_side(designs, scenario, draws, model):
+    """A table of candidates, where there is more than one."""
+    if len(designs) < 2:
+        return []
+    rows = []
+    for name, design in designs.items():
+        p = evaluate(design, scenario, model=model)
+        rows.append((False, name, f"{p.total_mass_kg:.2f} kg", f"{p.range_km:.3g} km", f"{p.slope_capability_deg:.1f}°",
+                     f"{100 * joint_odds(design, scenario, draws=draws, model=model):.0f} %"))
+    return ["<h2>Candidates</h2>", _rows(("design", "mass", "range", "slope capability", "all demands hold in"), rows)]
 
 
 def _mission_words(scenario):
@@ -323,4 +347,4 @@ def _small_print(model, draws):
 def _download(design, scenario):
     data = base64.b64encode(catalog.to_json(design, scenario).encode()).decode()
     return ('<p class="screen"><a download="design.json" href="data:application/json;base64,' + data
-            + '">design.json</a>: load it in the explorer, view “keep”.</p>')
+            + '">design.json</a>: open it in the explorer.</p>')
