@@ -209,7 +209,7 @@ def mass(result, size=SIZE, spans=None, ghosts=()):
         for _, cls, other in ghosts:
             axes.parts.append(f'<path class="l {cls}" d="M{axes.x(getattr(other.mass, name)):.1f} {y - 0.42 * row:.1f}v{0.84 * row:.1f}"/>')
     sure = "" if spans is None else f", 90 % of draws {spans[0]:.1f} to {spans[1]:.1f}"
-    axes.parts.append(text(100, 14, f"{result.total_mass_kg:.2f} kg in all{sure}", "b"))
+    axes.parts.append(text(8, 14, f"{result.total_mass_kg:.2f} kg in all{sure}", "b"))
     heaviest = next(iter(items))
     return svg(width, height, str(axes), f"Bars of mass line items: {result.total_mass_kg:.2f} kg in all{sure}; the largest is "
                f"{heaviest[:-3].replace('_', ' ')} with {items[heaviest]:.2f} kg.")
@@ -218,12 +218,14 @@ def mass(result, size=SIZE, spans=None, ghosts=()):
 def wheel(result, design, scenario, model, size=SIZE):
     """The wheel in its soil, and its stresses along the contact at the slip balance."""
     width, height = size
-    part = round(0.45 * width)
-    drawn = wheel_picture(design, result, scenario, model=model, width=part, height=height - 20)
+    narrow = width < 460                                 # then one above the other
+    part = width if narrow else round(0.45 * width)
+    drawn = wheel_picture(design, result, scenario, model=model, width=part, height=round(0.52 * height) if narrow else height - 20)
     if result.buried:
         return svg(width, height, drawn, alt(drawn))
     _, angle, normal, shear = contact(design, result, scenario, model, 61)
-    axes = Axes((part + 44, 24, width - 14, height - 44), (0, float(np.degrees(angle[-1])) * 1.02), span(normal, shear, zero=True))
+    axes = Axes((44, round(0.52 * height) + 26, width - 14, height - 44) if narrow else (part + 44, 24, width - 14, height - 44),
+                (0, float(np.degrees(angle[-1])) * 1.02), span(normal, shear, zero=True))
     axes.frame("Stress", "kPa", "angle ahead of the lowest point (°)")
     for values, cls, name, dash in ((normal, "c0", "normal", ""), (shear, "c1", "shear", "stroke-dasharray:7 3")):
         axes.line(np.degrees(angle), values, cls, dash)
@@ -287,7 +289,8 @@ def why(metric, names, values, before, after, baseline, size=SIZE):
                           + text(b + 5, y + tall / 2 + 4, f"{step:+.3g}", "s"))
     for value, dash in ((before, "2 3"), (after, "7 4")):
         axes.parts.append(f'<path class="a" stroke-dasharray="{dash}" d="M{axes.x(value):.1f} {axes.box[1]}V{axes.box[3]}"/>')
-    axes.parts.append(text(8, 14, f"{words}: {baseline} (dotted) {before:.4g} to this design (dashed) {after:.4g} {unit}", "b")
+    said = f"{words}: {baseline} (dotted) {before:.4g} to this design (dashed) {after:.4g} {unit}"
+    axes.parts.append(text(8, 14, said if 7 * len(said) < width else f"{words}: from {before:.4g} to {after:.4g} {unit}", "b")
                       + text(8, 30, "▮ more", "s f0") + text(66, 30, "▮ less, to the left", "s f1"))
     steps = "; ".join(f"{name} {step:+.3g}" for name, step in rows)
     return svg(width, height, str(axes), f"Steps from {before:.4g} ({baseline}) to {after:.4g} in {named(metric)}: {steps}.")
@@ -316,7 +319,7 @@ def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, si
         axes.names(xs, ys, np.asarray(rovers[2])[inside])
     if np.isfinite(here[1]):
         axes.dot(*here, "f3", 6)
-    axes.parts.append(text(width - 14, 14, "● this design   band: 90 % of draws", "s q e"))
+    axes.parts.append(text(width - 14, 14, "● this design" + "   band: 90 % of draws" * (width > 460), "s q e"))
     return svg(width, height, str(axes), f"{named(metric)} against {x_label}: from {nominal[0]:.3g} at {values[0]:.3g} to "
                f"{nominal[-1]:.3g} at {values[-1]:.3g}; this design has {here[1]:.3g} at {here[0]:.3g}.".replace("nan", "no value"))
 
@@ -375,7 +378,7 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
     axes.frame(words.capitalize(), unit, named(names[0]), count=5)
     low, high = span(colour, room=0)
     for i in range(len(x)):
-        said = ", ".join(f"{label(n)[0]} {v[i]:.3g} {label(n)[1]}".strip() for n, v in zip(names, (x, y, colour)))
+        said = ", ".join(f"{label(n)[0]} {v[i]:.4g} {label(n)[1]}".strip() for n, v in zip(names, (x, y, colour)))
         first = i == (0 if picked is None else picked)
         axes.dot(x[i], y[i], "rdk-pick", 6, f'fill="{shade((colour[i] - low) / (high - low))}" stroke="currentColor" '
                  f'stroke-width="{2.6 if i == picked else 0.7}" opacity="{0.25 if faded[i] else 1}" tabindex="{0 if first else -1}" '

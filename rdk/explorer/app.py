@@ -200,6 +200,13 @@ class Explorer:
                 del self._pins[index]
         self._refresher.poke()
 
+    def pick(self, index):
+        """Put a design of the front on the sliders."""
+        if self.front is None or not 0 <= index < len(self.front):
+            raise ValueError(f"there is no point {index} of a front to pick")
+        with self._lock:
+            self._change_design(self.front.designs[index])
+
     def _values(self, design=None, mission=None):
         """A design's and a mission's values as the state holds them."""
         found = {} if design is None else {name: getattr(design, name) for name in DESIGN_SPACE}
@@ -367,8 +374,8 @@ class Explorer:
             value, said = field.cut(float(f"{1.1 * self.state[about]:.6g}"))
             self.set(**{about: value})
             self._notice = ("status", said or f"{field.label} raised to {field.words(value)} {field.unit}")
-        elif verb == "point" and self.front is not None and int(about) < len(self.front):
-            self._change_design(self.front.designs[int(about)])
+        elif verb == "point":
+            self.pick(int(about))
         elif verb == "run":
             self.optimise()
         elif verb == "cancel":
