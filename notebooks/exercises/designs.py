@@ -32,7 +32,7 @@ def _polar_slopes():
 
 
 def _missed_pct(metric, limit):
-    return 100 * np.mean(getattr(intervals(rashid(), mare(), draws=200).draws, metric) < limit)
+    return 100 * np.mean(getattr(intervals(rashid(), mare()).draws, metric) < limit)
 
 
 @cache
@@ -81,7 +81,7 @@ EXERCISES["06.3"] = Exercise(
      "Those that make it; the question is about those that miss.":
         lambda: 100 - _missed_pct("slope_capability_deg", 15),
      "Those that stall; slope capability is judged at slip 0.6.":
-        lambda: 100 * intervals(rashid(), mare(), draws=200).low["stalled"]})
+        lambda: 100 * intervals(rashid(), mare()).low["stalled"]})
 
 EXERCISES["06.4"] = Exercise(
     "2 numbers", _torque_shares,
