@@ -1,0 +1,440 @@
+"""Sizing: the lightest rover that meets a list of demands, what holds it back, what a demand costs, and its odds.
+
+The search is a differential evolution on the evaluator itself; four and six wheels are searched side by side and never
+mixed.
+"""
+from __future__ import annotations
+
+import dataclasses
+import math
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from ._evolution import ELITE, evolve
+from ._fields import Shown, check, require, unknown
+from .design import DESIGN_SPACE, Design, Model, Scenario
+from .mission import Performance, evaluate
+from .sampling import METRICS, decode, encode, random_designs, replaced
+from .uncertainty import uncertain_inputs
+
+__all__ = ["Demand", "Progress", "Sizing", "prudent_demands", "size"]
+
+POPULATION, GENERATIONS = 40, 130                        # designs of each wheel count
+# with confidence: draws, designs, generations, margin (a share of 1 - confidence), lanes when the next stage starts
+STAGES = (64, 32, 40, -0.4, 90_000), (512, 20, 45, 0.08, 220_000), (2048, 12, 30, 0.0, 330_000)
+PATIENCE = 1.4                                           # times its budget, while a stage has met nothing
+FIRST_LOOK = 4                                           # a quarter of the draws comes first, the hardest
+FRESH_DRAWS, FRESH_SEED = 20_480, 7_919                  # of the odds; the seed is added to that of the search
+LANES = 2**15                                            # designs x draws evaluated at once
+LIGHT = ("wheel_width_m", "avionics_power_w")            # least in half of the first generation ...
+SKEWED = ("chassis_mass_kg", "solar_area_m2", "battery_capacity_wh", "peak_wheel_torque_nm")     # ... drawn as u^3
+TIGHT = 0.005                                            # a demand holds the design within this share of its limit
+PRICE_STEP = 0.05                                        # share of its limit by which a demand is moved for its price
+WORST = 1e3                                              # shortfall of a demand, in units of its limit, at most
+VARIABLES = list(DESIGN_SPACE)
+WHEELS = VARIABLES.index("wheel_count")                  # the gene that no trial changes
+
+
+class _Triple(NamedTuple):
+    field: str
+    sign: str
+    limit: float
+
+
+class Demand(_Triple):
+    """A Performance field, ">=" or "<=", and its limit; `why` says what it is good for."""
+
+    def __new__(cls, field: str, sign: str, limit: float, why: str = ""):
+        demand = super().__new__(cls, field, sign, limit)
+        demand.why = why
+        return demand
+
+    def __str__(self):
+        return f"{self.field} {self.sign} {self.limit:g}"
+
+    def slack(self, performance):
+        """How far a performance is inside the limit, in the field's unit; below 0 where the demand fails."""
+        value = np.asarray(getattr(performance, self.field), float)
+        slack = value - self.limit if self.sign == ">=" else self.limit - value
+        return np.where(np.isnan(slack), -np.inf, slack)
+
+
+class Progress(NamedTuple):
+    """What `on_generation` receives: the generation just finished, of how many, and the best design so far."""
+    generation: int
+    generations: int
+    design: Design
+
+
+# ---- the search -----------------------------------------------------------------------------------------------
+
+@dataclasses.dataclass(frozen=True)
+class _Search:
+    """What is asked of `size`, and how a population of genes does on it."""
+    scenario: Scenario
+    demands: tuple
+    minimise: str
+    confidence: float | None
+    model: Model
+    bounds: dict | None
+    seed: int
+
+    @cached_property
+    def scales(self):
+        """What one unit of shortfall is: the limit of each demand; the usual spread of the field where that is 0."""
+        scales = np.array([abs(demand.limit) for demand in self.demands], float)
+        if not scales.all():
+            usual = evaluate(random_designs(64, seed=0, bounds=self.bounds), self.scenario, model=self.model)
+            for i in np.flatnonzero(scales == 0):
+                value = np.asarray(getattr(usual, self.demands[i].field), float)
+                value = value[np.isfinite(value)]
+                scales[i] = np.subtract(*np.quantile(value, [0.75, 0.25])) if value.size else 0
+        return np.where(scales > 0, scales, 1.0)
+
+    def first(self, random, count=POPULATION, known=None):
+        """First generations: half in the light corner, half anywhere; one population a wheel count."""
+        genes, corner = random.random((2, count, len(VARIABLES))), count // 2
+        genes[:, :corner, [VARIABLES.index(name) for name in LIGHT]] = 0
+        genes[:, :corner, [VARIABLES.index(name) for name in SKEWED]] **= 3
+        if known is not None:
+            genes[:, :min(corner, len(known))] = known[:corner]
+        genes[..., WHEELS] = [[0], [1]]
+        both = decode(genes[:, 0], self.bounds).wheel_count
+        return genes if both[0] != both[1] else genes[:1]
+
+    def score(self, genes, *parents):
+        """Objective and summed relative shortfall of genes (populations, designs, 11) at the nominal values."""
+        shape = genes.shape[:2]
+        found = evaluate(decode(genes.reshape(-1, genes.shape[2]), self.bounds), self.scenario, model=self.model)
+        return tuple(x.reshape(shape) for x in self._judged(found))
+
+    def _judged(self, found):
+        objective = np.array(getattr(found, self.minimise), float)
+        violation = np.zeros(objective.shape)
+        for demand, scale in zip(self.demands, self.scales):
+            violation += np.clip(-demand.slack(found) / scale, 0, WORST)
+        failed = found.buried | ~np.isfinite(objective)  # a lane without a solution
+        return np.where(failed, np.inf, objective), np.where(failed, np.inf, violation)
+
+    # -- with confidence
+
+    def margins(self, genes, changes):
+        """How far inside its limit each demand is, in units of it: (draws, designs, demands). Flags: inf or -1."""
+        designs, draws = decode(genes, self.bounds), len(next(iter(changes.values())))
+        margins = np.empty((draws, len(genes), len(self.demands)))
+        step = max(LANES // max(len(genes), 1), 1)       # bounded memory
+        for start in range(0, draws, step):
+            part = {name: value[start:start + step, None] for name, value in changes.items()}
+            *drawn, model = replaced(designs, self.scenario, self.model, part)
+            found = evaluate(*drawn, model=model)
+            for i, (demand, scale) in enumerate(zip(self.demands, self.scales)):
+                margin = np.where(found.buried, -np.inf, demand.slack(found) / scale)
+                flag = getattr(found, demand.field).dtype == bool
+                margins[start:start + step, :, i] = np.where(flag & (margin >= 0), np.inf, margin)
+        return margins
+
+    def robust(self, changes, confidence):
+        """A score in which the joint share of draws is a constraint, and a list that counts the lanes it takes."""
+        draws, lanes = len(next(iter(changes.values()))), [0]
+        allowed = math.floor((1 - confidence) * draws + 1e-9)
+        look = max(draws // FIRST_LOOK, min(allowed + 1, draws))
+        parts = [{name: value[part] for name, value in changes.items()} for part in (slice(look), slice(look, None))]
+
+        def worst(genes, part):
+            lanes[0] += len(genes) * len(next(iter(part.values())))
+            return self.margins(genes, part).min(2, initial=np.inf)
+
+        def missing(margin):
+            """Share of draws missing, and a little of how far the draw that decides fails: a slope to walk down."""
+            failing, decides = (margin < 0).sum(0), np.partition(margin, allowed, axis=0)[allowed]
+            return np.where(failing > allowed, (failing - allowed) / draws + 0.1 * np.clip(-decides, 0, 1), 0)
+
+        def score(genes, objective=None, violation=None):
+            new, short = self.score(genes)
+            flat, open_ = genes.reshape(-1, genes.shape[2]), np.isfinite(short)
+            hopeless = np.zeros(new.shape, bool)
+            if objective is not None:                    # who cannot replace the parent need not be drawn
+                open_ = (short < violation) | (short == violation) & (new < objective)
+                hopeless = violation == 0                # where one failing draw too many settles it
+            waiting = np.flatnonzero(open_)
+            added = np.full(new.size, np.inf)
+            first = worst(flat[waiting], parts[0])
+            stays = ~(hopeless.ravel()[waiting] & ((first < 0).sum(0) > allowed))
+            rest = worst(flat[waiting[stays]], parts[1]) if look < draws else first[:0, stays]
+            added[waiting[stays]] = missing(np.concatenate([first[:, stays], rest]))
+            return new, short + added.reshape(short.shape)
+
+        return score, lanes
+
+    def draws(self, count, seed):
+        """The uncertain inputs, one value a draw: the same for all designs."""
+        return uncertain_inputs(self.scenario, draws=count, seed=seed, model=self.model)
+
+    def stages(self, known=None):
+        """Yield (genes, objective, violation), each by population, after every generation."""
+        random = np.random.default_rng(self.seed)
+        genes = self.first(random, known=known)
+        if self.confidence is None:
+            yield from evolve(self.score, genes, random, GENERATIONS, WHEELS)
+            return
+        for state in evolve(self.score, genes, random, GENERATIONS, WHEELS):
+            yield state
+        if state[2].min() > 0:                           # not even at the nominal values
+            return
+        spent = 0
+        for draws, designs, generations, margin, budget in STAGES:
+            genes = genes[:, :designs]
+            changes = self.draws(draws, self.seed)
+            # the hardest draws first
+            order = np.argsort(self.margins(genes[0, :ELITE], changes).min((1, 2), initial=np.inf), kind="stable")
+            score, lanes = self.robust({name: value[order] for name, value in changes.items()},
+                                       self.confidence + margin * (1 - self.confidence))
+            for state in evolve(score, genes, random, generations, WHEELS):
+                yield state
+                if spent + lanes[0] > budget * (PATIENCE if state[2].min() > 0 else 1):
+                    break
+            spent, genes = spent + lanes[0], state[0]
+
+    @property
+    def generations(self):
+        """How many generations at most."""
+        return GENERATIONS + (sum(stage[2] for stage in STAGES) if self.confidence else 0)
+
+    def met(self, demands):
+        """Whether some design meets these of the demands at the nominal values."""
+        search = dataclasses.replace(self, demands=tuple(demands), confidence=None)
+        return any(violation.min() == 0 for _, _, violation in search.stages())
+
+
+# ---- the result -----------------------------------------------------------------------------------------------
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Sizing(Shown):
+    """The rover that `size` found.
+
+    Attributes
+    ----------
+    design : Design
+        Where nothing meets the demands (or the confidence), the nearest miss.
+    performance : Performance
+    message : str
+        Empty, or which demands conflict, which confidence is out of reach, or that the search was stopped.
+    binding : tuple of str
+        Names of the demands met with no more than 0.5 % to spare (of a flag: that a step to a better objective turns),
+        and of the variables at a bound where a step inward, alone, worsens the objective or such a demand.
+    """
+    design: Design
+    performance: Performance
+    message: str
+    search: _Search
+    population: np.ndarray
+
+    @cached_property
+    def _holds(self):
+        """Whether each demand (across) holds in each fresh draw (down)."""
+        search = self.search
+        changes = search.draws(FRESH_DRAWS, search.seed + FRESH_SEED)
+        return search.margins(encode(self.design, search.bounds), changes)[:, 0] >= 0
+
+    @property
+    def odds(self) -> float:
+        """Share of 20,480 fresh draws of the uncertain inputs in which all demands hold."""
+        return float(self._holds.all(1).mean())
+
+    @property
+    def demands(self):
+        """A DataFrame: each demand, the value reached, the slack left, the share of fresh draws in which it holds."""
+        import pandas as pd
+        asked = self.search.demands
+        frame = pd.DataFrame({"demand": list(map(str, asked)),
+                              "value": [float(getattr(self.performance, demand.field)) for demand in asked],
+                              "slack": [float(demand.slack(self.performance)) for demand in asked],
+                              "share": self._holds.mean(0)})
+        object.__setattr__(frame, "prices", self.prices)             # reads well: sizing.demands.prices()
+        return frame
+
+    def prices(self):
+        """The demands with what one unit more of each costs, in units of the objective: found by sizing again.
+
+        Each demand in turn is made harder by 5 % of its limit (of the field's usual spread where that is 0), at the
+        nominal values. inf: then nothing meets the demands any more. NaN: a flag, which has no unit.
+        """
+        search = dataclasses.replace(self.search, confidence=None)
+        base, prices = getattr(self.performance, search.minimise) if self.search.confidence is None else math.inf, []
+        best = [min(base, _best(search, self.population)[0])]
+        for i, (demand, scale) in enumerate(zip(search.demands, search.scales)):
+            if isinstance(getattr(self.performance, demand.field), bool):
+                prices.append((math.inf, math.nan))
+                continue
+            step = PRICE_STEP * scale
+            harder = Demand(demand.field, demand.sign, demand.limit + step * (1 if demand.sign == ">=" else -1))
+            moved = dataclasses.replace(search, demands=search.demands[:i] + (harder,) + search.demands[i + 1:])
+            prices.append((_best(moved, self.population)[0], step))
+        frame, best = self.demands, min(best + [found for found, _ in prices])   # what meets more meets this too
+        unit = "kg" if search.minimise.endswith("_kg") else search.minimise
+        frame[f"{unit}_per_unit"] = [(found - best) / step for found, step in prices]
+        return frame
+
+    @cached_property
+    def binding(self) -> tuple:
+        search, here = self.search, self.performance
+        gene = encode(self.design, search.bounds)[0]
+        steps = np.full(len(gene), 0.01)
+        steps[VARIABLES.index("grouser_count")] = 0.05   # more than one of 24
+        nearby = np.clip(np.concatenate([gene + np.diag(steps), gene - np.diag(steps)]), 0, 1)
+        moved = evaluate(decode(nearby, search.bounds), search.scenario, model=search.model)
+        change = np.asarray(getattr(moved, search.minimise), float) - getattr(here, search.minimise)
+        breaks, names = np.zeros(len(nearby), bool), {}
+        for demand, scale in zip(search.demands, search.scales):
+            slack, after = demand.slack(here), demand.slack(moved)
+            flag = isinstance(getattr(here, demand.field), bool)
+            if slack < 0 or np.any((after < 0) & (change < 0)) if flag else slack <= TIGHT * scale:
+                names[demand.field] = None
+                breaks |= after < slack - 1e-9 * scale
+        hurts = (breaks | (change > 1e-9)).reshape(2, -1)
+        low, high = gene < 0.001, gene > 0.999
+        held = (low & hurts[0] | high & hurts[1]) & (np.arange(len(gene)) != WHEELS)
+        return (*names, *np.array(VARIABLES)[held].tolist())
+
+    def _summary(self):
+        import pandas as pd
+        goal = f"{self.search.minimise} {getattr(self.performance, self.search.minimise):.4g}"
+        heading = f"Sizing: {goal}; held by {', '.join(self.binding) or 'nothing'}. {self.message}".strip()
+        return heading, pd.DataFrame([self.design.numbers()], [""]).T
+
+
+def _best(search, known):
+    """Least objective that a search finds (inf where nothing meets the demands), and its last population."""
+    for genes, objective, violation in search.stages(known):
+        pass
+    return min(np.where(violation[:, 0] > 0, np.inf, objective[:, 0])), genes
+
+
+def _asked(demands):
+    """Demands, checked; they may contradict each other: that is an answer, not an error."""
+    if not isinstance(demands, (list, tuple)) or not all(isinstance(d, (list, tuple)) for d in demands):
+        raise ValueError(f"demands must be a list of (field, '>=' or '<=', limit); got {demands!r}")
+    asked = []
+    for demand in demands:
+        if len(demand) != 3 or demand[1] not in (">=", "<="):
+            raise ValueError(f"demands must be like ('range_km', '>=', 30); got {demand!r}")
+        if demand[0] not in METRICS:
+            raise unknown("demands: no Performance field", demand[0], METRICS)
+        limit = float(demand[2]) if isinstance(demand[2], (bool, np.bool_)) else demand[2]
+        limit = check(f"demands: limit of {demand[0]}", limit, scalar=True)
+        asked.append(Demand(demand[0], demand[1], limit, getattr(demand, "why", "")))
+    return tuple(asked)
+
+
+def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confidence: float | None = None,
+         model: Model = Model(), bounds: dict | None = None, seed: int = 0, on_generation=None) -> Sizing:
+    """The lightest rover that meets a list of demands on a mission.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        A single mission; its traverse limit holds, its `problem` is not read. A required obstacle height above 0 is one
+        demand more.
+    demands : sequence of (str, str, float)
+        Such as ("range_km", ">=", 30), on any Performance field; a flag is 1 (or True) or 0.
+    minimise : str
+        The Performance field to make least.
+    confidence : float, optional
+        Joint share of draws of the uncertain inputs in which all demands must hold, between 0 and 1; they hold at the
+        nominal values too.
+    model : Model
+    bounds : dict of str to (float, float), optional
+        Limits of some variables in place of those in DESIGN_SPACE.
+    seed : int
+        Same seed, same rover.
+    on_generation : callable, optional
+        Called with a `Progress` after each generation; when it returns True the search stops there.
+
+    Returns
+    -------
+    Sizing
+        Demands that nothing meets raise nothing: `message` names those that conflict, each of which could be met
+        without one of the others, and `design` is the nearest miss.
+
+    Examples
+    --------
+    >>> import rdk
+    >>> mare = rdk.scenario("equatorial_mare_traverse")
+    >>> found = size(mare, [("range_km", ">=", 30), ("slope_capability_deg", ">=", 20)])
+    >>> f"{found.performance.total_mass_kg:.2f} kg"
+    '8.35 kg'
+    """
+    require(scenario=(scenario, Scenario), model=(model, Model))
+    for name, record in ("scenario", scenario), ("model", model):
+        if record.shape:
+            raise ValueError(f"{name} must be a single one for a search; got arrays of shape {record.shape}")
+    if minimise not in METRICS:
+        raise unknown("minimise: no Performance field", minimise, METRICS)
+    if confidence is not None:
+        confidence = check("confidence", confidence, above=0, below=1, scalar=True)
+    seed = int(check("seed", seed, 0, whole=True, scalar=True))
+    asked = _asked(demands)
+    if scenario.required_obstacle_height_m > 0:
+        asked += (Demand("obstacle_capability_m", ">=", scenario.required_obstacle_height_m),)
+    search = _Search(scenario, asked, minimise, confidence, model, bounds, seed)
+    done, stopped = 0, False
+    for genes, objective, violation in search.stages():
+        done += 1
+        best = np.lexsort((objective[:, 0], violation[:, 0]))[0]
+        if on_generation is not None and on_generation(Progress(
+                done, search.generations, decode(genes[best, :1], bounds)[0])):
+            stopped = True
+            break
+    design = decode(genes[best, :1], bounds)[0]
+    found = Sizing(design, evaluate(design, scenario, model=model), "", search, genes[best])
+    if stopped:
+        message = f"stopped after generation {done} of {search.generations}"
+    elif violation[best, 0] > 0:
+        message = _conflict(found)
+    else:
+        return found
+    return dataclasses.replace(found, message=message)
+
+
+def _conflict(found):
+    """Which demands conflict, or which confidence is out of reach."""
+    search, performance = found.search, found.performance
+    if performance.buried:
+        return "no design has a solution: the wheels are buried"
+    missed = [demand for demand in search.demands if demand.slack(performance) < 0]
+    if not missed:
+        frame = found.demands
+        weakest = frame.loc[frame["share"].idxmin()]
+        return (f"a confidence of {search.confidence:g} is not reachable; best share {found.odds:.3f}. It fails most "
+                f"often: {weakest['demand']}, which holds in {weakest['share']:.3f} of the draws")
+    by = ", ".join(f"{demand.field} by {-demand.slack(performance):.3g}" for demand in missed)
+    tight = [demand for demand, scale in zip(search.demands, search.scales)
+             if demand.slack(performance) <= 10 * TIGHT * scale]
+    conflict = tight if len(tight) < len(search.demands) and not search.met(tight) else list(search.demands)
+    for demand in [d for d in conflict if d not in missed] + missed:
+        rest = [other for other in conflict if other is not demand]
+        if rest and not search.met(rest):
+            conflict = rest                              # it conflicts without this one
+    if len(conflict) == 1:
+        return f"no design within the bounds meets {conflict[0]}; the nearest misses {by}"
+    words = " and ".join(map(str, conflict))
+    return (f"no design within the bounds meets {words} together, though it could without any one of them; the nearest "
+            f"misses {by}")
+
+
+def prudent_demands(scenario: Scenario) -> tuple[Demand, ...]:
+    """The demands that a careful engineer starts from, each with its reason as `why`; add what the mission asks for.
+
+    They can have no solution: a served bus at the pole needs more battery than DESIGN_SPACE holds. That is the answer.
+    """
+    require(scenario=(scenario, Scenario))
+    return (
+        Demand("feasible", ">=", 1, "it drives at all, and gathers the energy that it spends"),
+        Demand("slip", "<=", 0.4, "beyond a slip of 0.4 at the mission's slope, measured wheels dig in"),
+        Demand("slope_capability_deg", ">=", max(scenario.slope_deg, 0.0), "it climbs what the mission crosses"),
+        Demand("unserved_h", "<=", 0, "avionics and payload are supplied at every hour"),
+        Demand("hot_survival", ">=", 1, "the enclosure stays below its upper limit at noon"),
+        Demand("structure_share", ">=", 0.2, "published chassis are 17 to 34 % of the mass"),
+        Demand("wheel_gap_m", ">=", 0, "wheels of one side must not overlap, which no model forbids"))
