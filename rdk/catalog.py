@@ -220,7 +220,7 @@ def rover_row(name: str) -> dict:
 
 
 @functools.cache
-def skyline_sites():
+def skyline_sites() -> dict[str, dict]:
     """The sites that `skyline` knows, with what is known of each.
 
     Returns
@@ -237,7 +237,7 @@ def skyline_sites():
     return found
 
 
-def skyline(site, height_m=2):
+def skyline(site: str, height_m: float = 2) -> Skyline:
     """The skyline of a site near the south pole, seen from a height above its ground.
 
     Parameters

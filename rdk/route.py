@@ -5,13 +5,16 @@ cell. Slopes shorter than a cell, turning, and braking that would charge the bat
 """
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import catalog, mission, power, sky
 from ._fields import check
-from .design import Model
+from .design import Design, Model, Scenario
+from .terrain import Terrain
 
 MODES = ("drive", "science", "charge", "sleep", "arrived", "empty", "stalled")
 DRIVE, SCIENCE, CHARGE, SLEEP, ARRIVED, EMPTY, STALLED = range(7)
@@ -19,7 +22,7 @@ DRIVE, SCIENCE, CHARGE, SLEEP, ARRIVED, EMPTY, STALLED = range(7)
 
 # ---- what a metre costs ----------------------------------------------------------------------------------------
 
-def per_metre(design, scenario, slope_deg, *, model=Model()):
+def per_metre(design: Design, scenario: Scenario, slope_deg: ArrayLike, *, model: Model = Model()) -> tuple:
     """Energy of the wheels (J/m) and time (s/m) for a metre of ground, at the hub's or the allowed speed.
 
     Parameters
@@ -45,7 +48,7 @@ def per_metre(design, scenario, slope_deg, *, model=Model()):
         return np.where(np.isfinite(second), hub_w * second, np.inf)[()], second[()]
 
 
-def cost(design, scenario, *, model=Model(), limit_deg=34.5):
+def cost(design: Design, scenario: Scenario, *, model: Model = Model(), limit_deg: float = 34.5) -> Callable:
     """Joules for a metre of ground as a function of the slope (deg), for `cheapest`: wheels, avionics and payload.
 
     One design; the function interpolates a table in steps of 0.5 deg and is infinite beyond `limit_deg`.
@@ -58,7 +61,7 @@ def cost(design, scenario, *, model=Model(), limit_deg=34.5):
     return lambda slope_deg: np.interp(slope_deg, slope, joule, left=np.inf, right=np.inf)
 
 
-def rocks_per_m2(diameter_m, area_fraction):
+def rocks_per_m2(diameter_m: ArrayLike, area_fraction: ArrayLike) -> float | np.ndarray:
     """Rocks wider than `diameter_m` on a square metre, where rocks cover `area_fraction` of the ground.
 
     Golombek & Rapp (1997): those wider than D cover k exp(-q D), q = 1.79 + 0.152 / k. One covers pi D^2 / 4, so
@@ -71,7 +74,8 @@ def rocks_per_m2(diameter_m, area_fraction):
         return np.where(k > 0, 4 * k * q / np.pi * (np.exp(-q * diameter) / diameter - q * exp1(q * diameter)), 0.0)[()]
 
 
-def detour_factor(obstacle_m, width_m, area_fraction, *, height_over_diameter=0.5):
+def detour_factor(obstacle_m: ArrayLike, width_m: ArrayLike, area_fraction: ArrayLike, *,
+                  height_over_diameter: ArrayLike = 0.5) -> float | np.ndarray:
     """Length driven over length gained, where rocks too tall to climb are driven around one by one.
 
     Parameters
@@ -105,7 +109,8 @@ class Route:
     message: str = ""
 
 
-def cheapest(terrain, joule_per_m, start, goal, *, tilt_limit_deg, edge_limit_deg, detour=1.0):
+def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], goal: tuple[int, int], *,
+             tilt_limit_deg: float, edge_limit_deg: float, detour: ArrayLike = 1.0) -> Route:
     """The way of least energy between two cells, over the eight neighbours of each.
 
     Parameters
@@ -187,12 +192,13 @@ class Way:
     skylines: tuple = field(default=(), repr=False)
 
     @property
-    def ground_m(self):
+    def ground_m(self) -> np.ndarray:
         """Length of each leg over the ground."""
         return np.diff(self.distance_m) / np.cos(np.radians(self.slope_deg))
 
 
-def along(terrain, cells, *, skyline_every_m=None, height_m=1.0, beyond=()):
+def along(terrain: Terrain, cells: ArrayLike, *, skyline_every_m: float | None = None, height_m: float = 1.0,
+          beyond: tuple[Terrain, ...] = ()) -> Way:
     """The Way through cells of a map; with `skyline_every_m` it looks around at that spacing and at the end."""
     cells = np.asarray(cells)
     x, y = terrain.place(cells[:, 0], cells[:, 1])
@@ -204,7 +210,7 @@ def along(terrain, cells, *, skyline_every_m=None, height_m=1.0, beyond=()):
                tuple(terrain.skyline(x[i], y[i], height_m, beyond=beyond) for i in stops))
 
 
-def ridge():
+def ridge() -> Way:
     """The tabulated Way along Connecting Ridge, 1.9 km near the south pole, with its skylines 1 m above ground."""
     rows, table = catalog.rows("ridge_route.csv"), catalog.rows("ridge_route_skylines.csv")
     distance, latitude, longitude, height = (np.array([float(row[name]) for row in rows]) for name in (
@@ -233,13 +239,14 @@ class March:
     stranded_m: float
     message: str
 
-    def hours(self, mode):
+    def hours(self, mode: str) -> float | np.ndarray:
         """Hours spent in one of `MODES`."""
         return (self.mode == MODES.index(mode)).sum(0) * self.time_h[0]
 
 
-def march(way, design, scenario, *, model=Model(), delay_h=0.0, follow_sun=False, rest_soc=0.5, go_soc=0.9,
-          science_every_m=np.inf, science_h=0.0, detour=1.0, step_h=0.25):
+def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(), delay_h: ArrayLike = 0.0,
+          follow_sun: bool = False, rest_soc: float = 0.5, go_soc: float = 0.9, science_every_m: float = np.inf,
+          science_h: float = 0.0, detour: float = 1.0, step_h: float = 0.25) -> March:
     """Drive along a way under the real sun: drive, do science, charge, sleep, until arrival, an empty pack or a stall.
 
     The rover drives until its charge falls to `rest_soc`, then stands with the avionics on while the sun pays for
@@ -266,6 +273,7 @@ def march(way, design, scenario, *, model=Model(), delay_h=0.0, follow_sun=False
         raise ValueError("a march needs the real sun: give the scenario a start_utc, such as '2026-10-01'")
     check("rest_soc", rest_soc, np.max(model.soc_floor), go_soc), check("go_soc", go_soc, rest_soc, 1)
     check("science_every_m", science_every_m, above=0, infinite=True), check("science_h", science_h, 0)
+    check("step_h", step_h, above=0)
     lanes = np.broadcast_shapes(design.shape, scenario.shape, model.shape, np.shape(delay_h))
     if len(lanes) > 1:
         raise ValueError(f"a march takes one row of lanes; got shape {lanes}")

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import power
 
@@ -53,7 +54,7 @@ class Skyline:
             object.__setattr__(self, name, values)
 
     @classmethod
-    def of(cls, value):
+    def of(cls, value) -> Skyline:
         """A Skyline from one, from what has its two arrays, or from elevations evenly spaced from north clockwise."""
         if isinstance(value, cls):
             return value
@@ -79,12 +80,12 @@ class Skyline:
         low, high = self.elevation_deg.min(), self.elevation_deg.max()
         return f"<Skyline {self.name or 'unnamed'}: {low:.1f} to {high:.1f} deg>"
 
-    def at(self, azimuth_deg):
+    def at(self, azimuth_deg: ArrayLike) -> np.ndarray:
         """Elevation of the skyline in degrees at azimuths, linear in between."""
         return np.interp(azimuth_deg, self.azimuth_deg, self.elevation_deg, period=360)
 
 
-def julian_date(utc):
+def julian_date(utc) -> float | np.ndarray:
     """Julian date (TT) of a UTC date: an ISO string such as "2026-07-01T12:00", or numpy datetimes of any shape.
 
     Examples
@@ -104,7 +105,7 @@ def julian_date(utc):
     return 2451545.0 + (seconds + TT_MINUS_UTC_S) / 86400
 
 
-def subsolar_point(julian_date):
+def subsolar_point(julian_date: ArrayLike) -> tuple:
     """Point of the Moon with the sun overhead, in the mean-Earth frame.
 
     At 21 dates from 2015 to 2043 it is within 0.01 deg in latitude and 0.06 deg in longitude of DE440.
@@ -149,7 +150,7 @@ def subsolar_point(julian_date):
     return b_deg - 0.02186 * np.cos(np.radians(l_deg)), (l_deg + 0.01885) % 360
 
 
-def sun_position(latitude_deg, longitude_deg, julian_date):
+def sun_position(latitude_deg: ArrayLike, longitude_deg: ArrayLike, julian_date: ArrayLike) -> tuple:
     """Elevation and azimuth of the sun's centre at a place and date, in degrees, as `rdk.power.sun_position`.
 
     Parameters
@@ -167,7 +168,7 @@ def sun_position(latitude_deg, longitude_deg, julian_date):
     return power.sun_position(latitude_deg, longitude_deg - noon_deg, declination_deg)
 
 
-def lit_fraction(elevation_deg, azimuth_deg, skyline=None):
+def lit_fraction(elevation_deg: ArrayLike, azimuth_deg: ArrayLike, skyline=None) -> float | np.ndarray:
     """Share of the solar disc above a skyline, taken as level across the disc: 0 to 1.
 
     Parameters
@@ -182,7 +183,7 @@ def lit_fraction(elevation_deg, azimuth_deg, skyline=None):
     return 0.5 + (np.arcsin(u) + u * np.sqrt(1 - u * u)) / np.pi
 
 
-def longest_run(flags, step=1.0):
+def longest_run(flags: ArrayLike, step: float = 1.0) -> float:
     """Length of the longest unbroken run of true `flags` (one dimension), in units of `step`."""
     edges = np.flatnonzero(np.diff(np.r_[0, np.asarray(flags, bool).astype(np.int8), 0]))
     return (edges[1::2] - edges[::2]).max(initial=0) * step

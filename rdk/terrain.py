@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import catalog
 from ._fields import check, unknown
@@ -80,18 +81,18 @@ class Terrain:
         """Plane coordinates of a point of the unit sphere from its components along the axes."""
         return 2 * self.radius_m * east / (1 + up), 2 * self.radius_m * north / (1 + up)
 
-    def to_xy(self, latitude_deg, longitude_deg):
+    def to_xy(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> tuple:
         """Plane coordinates x, y (m) of places in degrees."""
         return self._from_axes(*np.tensordot(self._axes(), _vertical(latitude_deg, longitude_deg), 1))
 
-    def to_latlon(self, x, y):
+    def to_latlon(self, x: ArrayLike, y: ArrayLike) -> tuple:
         """Latitude and east longitude (deg) of plane coordinates in metres."""
         u, v = np.asarray(x, float) / (2 * self.radius_m), np.asarray(y, float) / (2 * self.radius_m)
         square = u * u + v * v
         p = np.tensordot(self._axes().T, np.array([2 * u, 2 * v, 1 - square]) / (1 + square), 1)
         return np.degrees(np.arcsin(np.clip(p[2], -1, 1))), np.degrees(np.arctan2(p[1], p[0])) % 360
 
-    def cell(self, x, y):
+    def cell(self, x: ArrayLike, y: ArrayLike) -> tuple:
         """Row and column of the cell that holds a point of the plane; a point outside is refused."""
         row = np.floor((self.north_m - np.asarray(y, float)) / self.step_m).astype(int)
         column = np.floor((np.asarray(x, float) - self.west_m) / self.step_m).astype(int)
@@ -102,7 +103,7 @@ class Terrain:
                              f"{self.north_m:g} m; got {x!r}, {y!r}")
         return row, column
 
-    def place(self, row, column):
+    def place(self, row: ArrayLike, column: ArrayLike) -> tuple:
         """Plane coordinates x, y (m) of the centres of cells."""
         return (self.west_m + (np.asarray(column) + 0.5) * self.step_m,
                 self.north_m - (np.asarray(row) + 0.5) * self.step_m)
@@ -114,7 +115,7 @@ class Terrain:
         return np.hypot(max(abs(x - self.west_m), abs(x - self.west_m - columns * self.step_m)),
                         max(abs(y - self.north_m), abs(y - self.north_m + rows * self.step_m)))
 
-    def at(self, x, y):
+    def at(self, x: ArrayLike, y: ArrayLike) -> np.ndarray:
         """Height at points of the plane, bilinear between the centres of cells; NaN outside."""
         rows, columns = self.height_m.shape
         row, column = (self.north_m - y) / self.step_m - 0.5, (x - self.west_m) / self.step_m - 0.5
@@ -135,18 +136,20 @@ class Terrain:
         down, right = np.gradient(self.height_m, self.step_m)
         return right, -down
 
-    def slope(self):
+    def slope(self) -> np.ndarray:
         """Steepest slope of each cell in degrees, over a baseline of two cells: shorter slopes are steeper."""
         return np.degrees(np.arctan(np.hypot(*self._gradient())))
 
-    def hillshade(self, azimuth_deg=315.0, elevation_deg=30.0):
+    def hillshade(self, azimuth_deg: float = 315.0, elevation_deg: float = 30.0) -> np.ndarray:
         """Brightness 0 to 1 of each cell, lit from an azimuth clockwise from the top of the map; no cast shadows."""
         east, north = self._gradient()
         azimuth, elevation = np.radians([azimuth_deg, elevation_deg])
         facing = np.sin(elevation) - np.cos(elevation) * (np.sin(azimuth) * east + np.cos(azimuth) * north)
         return np.clip(facing / np.sqrt(1 + east**2 + north**2), 0, 1)
 
-    def skyline(self, x, y, height_m=2.0, *, beyond=(), directions=720, nearest_m=15.0, farthest_m=180e3, growth=0.01):
+    def skyline(self, x: float, y: float, height_m: float = 2.0, *, beyond: tuple[Terrain, ...] = (),
+                directions: int = 720, nearest_m: float = 15.0, farthest_m: float = 180e3,
+                growth: float = 0.01) -> Skyline:
         """Skyline of a point of the map, by great circles with the Moon's curvature exact.
 
         A point of radius r at the arc g stands at tan(elevation) = (r cos g - r_eye) / (r sin g).
@@ -164,12 +167,15 @@ class Terrain:
             Where the search begins and ends. The steps are half a cell, later `growth` of the distance.
         """
         check("height_m", height_m, 0, scalar=True), check("directions", directions, 4, whole=True, scalar=True)
+        check("nearest_m", nearest_m, above=0), check("farthest_m", farthest_m, above=nearest_m)
+        check("growth", growth, above=0, maximum=1)
         ground = float(self.at(float(x), float(y)))
         if np.isnan(ground):
             raise ValueError(f"no height is known at x {x!r} m, y {y!r} m of {self!r}")
         turn = self.step_m / 2 / growth
-        s = np.r_[np.arange(nearest_m, turn, self.step_m / 2),
-                  np.geomspace(turn, farthest_m, max(int(np.log(farthest_m / turn) / growth), 2))]
+        s = np.arange(nearest_m, min(turn, farthest_m), self.step_m / 2)
+        if farthest_m > turn:
+            s = np.r_[s, np.geomspace(turn, farthest_m, max(int(np.log(farthest_m / turn) / growth), 2))]
         arc, azimuth = s / self.radius_m, np.arange(directions) * 360 / directions
         lat, lon = self.to_latlon(x, y)
         up, east = _vertical(lat, lon), _vertical(0.0, lon + 90)
@@ -190,8 +196,9 @@ class Terrain:
 
 # ---- files -----------------------------------------------------------------------------------------------------
 
-def read(path, *, scale=None, offset=None, west_m=None, north_m=None, step_m=None, latitude_deg=None,
-         longitude_deg=None):
+def read(path: str | Path, *, scale: float | None = None, offset: float | None = None, west_m: float | None = None,
+         north_m: float | None = None, step_m: float | None = None, latitude_deg: float | None = None,
+         longitude_deg: float | None = None) -> Terrain:
     """A height map from a file, with its place on the Moon.
 
     A PDS image (`.img` with its label `.lbl` beside it) and a GeoTIFF (`.tif`, with `tifffile` installed) say
@@ -349,7 +356,8 @@ def _moon(path, radius_m):
 
 # ---- made-up ground --------------------------------------------------------------------------------------------
 
-def synthetic(seed, *, like="connecting_ridge_10m", cells=256, step_m=None, latitude_deg=-85.0, longitude_deg=0.0):
+def synthetic(seed: int, *, like: str = "connecting_ridge_10m", cells: int = 256, step_m: float | None = None,
+              latitude_deg: float = -85.0, longitude_deg: float = 0.0) -> Terrain:
     """Made-up ground: a fractal with craters, its slopes those of a real map. It repeats at its edges.
 
     Parameters

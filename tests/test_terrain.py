@@ -167,9 +167,19 @@ def test_nested_maps():
     assert np.abs(nested.elevation_deg - wide.skyline(0.0, 0.0, 5.0).elevation_deg).mean() < 0.2
     twice = fine.skyline(0.0, 0.0, 5.0, beyond=[fine, wide])
     assert twice == nested
-    for wrong in (dict(height_m=-1), dict(directions=2), dict(x=5e3)):
-        with pytest.raises(ValueError, match="height_m|directions|no height is known"):
+    for wrong, words in ((dict(height_m=-1), "height_m"), (dict(directions=2), "directions"),
+                         (dict(growth=0), "growth"),
+                         (dict(farthest_m=5), "farthest_m"), (dict(x=5e3), "no height is known")):
+        with pytest.raises(ValueError, match=words):
             fine.skyline(**dict(x=0.0, y=0.0) | wrong)
+
+
+def test_the_search_ends_where_it_is_told_to():
+    height = np.zeros((100, 100))
+    height[:, 60:] = 500.0                               # a step up, 1 km from the middle
+    ground = Terrain(height, 100, -5000, 5000)
+    short, long = (ground.skyline(0.0, 0.0, farthest_m=reach).at(90.0) for reach in (800.0, 2000.0))
+    assert short < 0 < 20 < long
 
 
 # ---- files -------------------------------------------------------------------------------------------------
