@@ -195,3 +195,12 @@ def test_each_exercise_has_a_hint_a_place_for_the_answer_and_a_checked_solution(
     assert folded[0].source == "#### Solution" and folded[0].metadata["jp-MarkdownHeadingCollapsed"] is True
     assert folded == cells[cells.index(folded[0]):], "nothing that belongs to the solution stands outside"
     assert all(cell.metadata["jupyter"]["source_hidden"] for cell in solutions)
+
+
+@pytest.mark.parametrize("number", sorted(number for number in TASKS if number < "06"))
+def test_an_exercise_that_asks_more_than_one_thing_says_what_to_answer_with(number):
+    _, (text, *cells) = exercises_of(PATHS[number[:2]])[number]
+    asked = text.source.partition("<details>")[0]
+    assert asked.count("?") < 2 or "Answer with" in asked
+    told = [cell for cell in cells if cell.cell_type == "markdown" and not cell.source.startswith("#### ")]
+    assert told or "print" in cells[-1].source, "the solution says something"

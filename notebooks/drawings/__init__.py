@@ -1,7 +1,7 @@
 """Pictures of the notebooks that are too long for a cell: numbers in, a matplotlib Figure out.
 
 Every figure reads without colour (dashes and markers differ too) and names its units. Each function takes what the
-evaluator returned and computes nothing that a reader would want to check; `sketches` draws things before their formulas.
+evaluator returned and computes nothing that a reader would want to check; `sketches` come before a first formula.
 """
 from rdk.figures import (  # noqa: F401
     BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, STYLE, curves, panels)
