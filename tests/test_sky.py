@@ -15,6 +15,7 @@ from rdk.sky import Skyline
 
 DATA = Path(__file__).parents[1] / "data"
 HOURS = sky.julian_date(np.arange("2015-12-24", "2034-12-24", dtype="datetime64[h]"))
+DECLINATION, NOON = sky.subsolar_point(HOURS)
 LIGHT = {}                                               # site and height -> light of 19 years, computed once
 
 
@@ -35,8 +36,8 @@ def light(site, height_m):
     """Share of the disc in each hour of 19 years."""
     if (site, height_m) not in LIGHT:
         seen = rdk.skyline(site, height_m)
-        LIGHT[site, height_m] = sky.lit_fraction(
-            *sky.sun_position(seen.latitude_deg, seen.longitude_deg, HOURS), seen)
+        sun = power.sun_position(seen.latitude_deg, seen.longitude_deg - NOON, DECLINATION)
+        LIGHT[site, height_m] = sky.lit_fraction(*sun, seen)
     return LIGHT[site, height_m]
 
 
