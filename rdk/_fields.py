@@ -11,9 +11,17 @@ _ANY = dict(minimum=-math.inf, maximum=math.inf, above=None, below=None, whole=F
             scalar=False, optional=False)
 
 
-def number(minimum=-math.inf, maximum=math.inf, *, default=dataclasses.MISSING, **limits):
-    """A dataclass field that holds a real number, or an array of them, within the limits that `check` knows."""
-    return dataclasses.field(default=default, metadata=_ANY | dict(minimum=minimum, maximum=maximum) | limits)
+def number(minimum=-math.inf, maximum=math.inf, *, default=dataclasses.MISSING, **more):
+    """A dataclass field that holds a real number, or an array of them, within the limits that `check` knows.
+
+    `more` may also hold a `doc`, and what the class wants to know of its fields.
+    """
+    return dataclasses.field(default=default, metadata=_ANY | dict(minimum=minimum, maximum=maximum) | more)
+
+
+def described(doc, **more):
+    """A dataclass field that is not checked, with its line in the docstring of the class."""
+    return dataclasses.field(metadata=dict(doc=doc), **more)
 
 
 def _allowed(minimum, maximum, above, below, whole, choices, infinite, optional, **_):
@@ -34,27 +42,11 @@ def _allowed(minimum, maximum, above, below, whole, choices, infinite, optional,
 
 
 def check(name, value, minimum=-math.inf, maximum=math.inf, **limits):
-    """`value` as a float or a read-only float array, or a ValueError that says what is allowed.
+    """`value` as a float or a read-only float array, or a ValueError that names it and says what is allowed.
 
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : float or array_like
-    minimum, maximum : float
-        Inclusive limits.
-    above, below : float, optional
-        Exclusive limits, in place of `minimum` or `maximum`.
-    whole : bool
-        Only whole numbers are allowed; they come back as integers.
-    choices : tuple of float, optional
-        Only these values are allowed.
-    infinite : bool
-        Positive infinity is allowed too.
-    scalar : bool
-        Arrays are refused.
-    optional : bool
-        None is allowed too.
+    `minimum` and `maximum` are allowed themselves; `above` and `below`, in their place, are not. More limits: `whole`
+    numbers only (they come back as integers), these `choices` only, `infinite` (positive infinity too), `scalar` (no
+    arrays), `optional` (None too).
     """
     limits = _ANY | dict(minimum=minimum, maximum=maximum) | limits
     if limits["optional"] and value is None:
@@ -139,6 +131,9 @@ class Shown:
 class Later:
     """A field of a Record that may be given as a function without arguments: called when the field is first read."""
 
+    def __init__(self, doc):
+        self.metadata = dict(doc=doc)
+
     def __set_name__(self, owner, name):
         self.name = name
 
@@ -157,13 +152,27 @@ class Later:
 
 
 @functools.cache
-def _limits(cls):
-    return tuple((f.name, dict(f.metadata)) for f in dataclasses.fields(cls) if f.metadata)
+def limits_of(cls):
+    """The limits of every field of a Record that is a `number`, by name."""
+    return {f.name: dict(f.metadata) for f in dataclasses.fields(cls) if "minimum" in f.metadata}
 
 
 @functools.cache
 def _names(cls):
     return tuple(f.name for f in dataclasses.fields(cls))
+
+
+def _documented(cls):
+    """The docstring of a class with one entry for each field that has a `doc`: its limits stand on the field alone."""
+    entries = ""
+    for name, kind in cls.__annotations__.items():
+        about = getattr(vars(cls).get(name), "metadata", {})
+        words = [about["doc"]] if about.get("doc") else []
+        words += [f"Allowed: {_allowed(**about)}."] if "minimum" in about else []
+        if words:
+            many = " or ndarray" * (kind in (int, float, bool) and not about.get("scalar"))
+            entries += f"\n    {name} : {getattr(kind, '__name__', kind)}{many}\n        {' '.join(words)}"
+    return f"{(cls.__doc__ or '').rstrip()}\n\n    Attributes\n    ----------{entries}\n" if entries else cls.__doc__
 
 
 class Record(Shown):
@@ -175,9 +184,10 @@ class Record(Shown):
     def __init_subclass__(cls):
         for name in ("__eq__", "__hash__", "__repr__"):  # in place of those that a dataclass writes
             setattr(cls, name, getattr(Record, name))
+        cls.__doc__ = _documented(cls)
 
     def __post_init__(self):
-        for name, limits in _limits(type(self)):
+        for name, limits in limits_of(type(self)).items():
             object.__setattr__(self, name, check(name, getattr(self, name), **limits))
         shapes = {}
         for name, value in vars(self).items():

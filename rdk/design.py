@@ -5,12 +5,12 @@ All three are frozen dataclasses of numbers. A population is the same dataclass 
 """
 import math
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import NamedTuple
 
 import numpy as np
 
-from ._fields import Record, number, together
+from ._fields import Record, described, number, together
 from .sky import Skyline, julian_date
 from .terramechanics import TRANSITIONS, Soil, Wheel
 
@@ -25,61 +25,33 @@ class Variable(NamedTuple):
     kind: str = "continuous"
 
 
-DESIGN_SPACE = {
-    "wheel_radius_m": Variable(0.05, 0.20, "m", "r", "wheel radius"),
-    "wheel_width_m": Variable(0.03, 0.20, "m", "b", "wheel width"),
-    "grouser_height_m": Variable(0.0, 0.020, "m", "h_g", "grouser height"),
-    "grouser_count": Variable(0, 24, "1", "N_g", "grouser count", "whole"),
-    "wheel_count": Variable(4, 6, "1", "N_w", "wheel count", "choice"),
-    "chassis_mass_kg": Variable(0.5, 50.0, "kg", "m_c", "chassis mass"),
-    "wheelbase_m": Variable(0.3, 1.2, "m", "L_wb", "wheelbase"),
-    "solar_area_m2": Variable(0.1, 1.5, "m2", "A_s", "solar array area"),
-    "battery_capacity_wh": Variable(5.0, 500.0, "Wh", "C_b", "battery capacity"),
-    "avionics_power_w": Variable(5.0, 40.0, "W", "P_a", "avionics power"),
-    "peak_wheel_torque_nm": Variable(0.05, 20.0, "N m", "T_hub", "peak hub torque"),
-}
-"""The eleven design variables with their search range (the paper's Table 1), unit, symbol and label."""
+def _variable(low, high, unit, symbol, label, **limits):
+    """A field of `Design`: one axis of the design space."""
+    kind = "choice" if "choices" in limits else "whole" if "whole" in limits else "continuous"
+    span = f"{symbol}, {label}; {low:g} to {high:g}{'' if unit == '1' else ' ' + unit} in the design space."
+    return number(doc=span, axis=Variable(low, high, unit, symbol, label, kind), **limits)
 
 
 @dataclass(frozen=True)
 class Design(Record):
     """A rover design, or a population of them: the paper's eleven design variables.
 
-    Parameters
-    ----------
-    wheel_radius_m, wheel_width_m : float or ndarray
-        r, b in metres, positive.
-    grouser_height_m : float or ndarray
-        h_g in metres, zero or more.
-    grouser_count : int or ndarray
-        N_g on each wheel, a whole number, zero or more.
-    wheel_count : int or ndarray
-        4 (rigid) or 6 (rocker-bogie): stands for the mobility architecture.
-    chassis_mass_kg : float or ndarray
-        Structural mass m_c in kg, positive.
-    wheelbase_m : float or ndarray
-        In metres, positive. The paper's model does not read it; `Model.frame_mass_kg_m2` gives it a price.
-    solar_area_m2, battery_capacity_wh, avionics_power_w, peak_wheel_torque_nm : float or ndarray
-        A_s, C_b, P_a and the peak hub torque of one wheel, positive.
-
-    Raises
-    ------
-    ValueError
-        If a value is outside these limits or not finite, or if array lengths disagree.
+    Four wheels are a rigid layout, six a rocker-bogie. The paper's model does not read the wheelbase;
+    `Model.frame_mass_kg_m2` gives it a price.
     """
     example = "rdk.rover('Rashid-1')"
 
-    wheel_radius_m: float = number(above=0)
-    wheel_width_m: float = number(above=0)
-    grouser_height_m: float = number(0)
-    grouser_count: int = number(0, whole=True)
-    wheel_count: int = number(choices=(4, 6))
-    chassis_mass_kg: float = number(above=0)
-    wheelbase_m: float = number(above=0)
-    solar_area_m2: float = number(above=0)
-    battery_capacity_wh: float = number(above=0)
-    avionics_power_w: float = number(above=0)
-    peak_wheel_torque_nm: float = number(above=0)
+    wheel_radius_m: float = _variable(0.05, 0.20, "m", "r", "wheel radius", above=0)
+    wheel_width_m: float = _variable(0.03, 0.20, "m", "b", "wheel width", above=0)
+    grouser_height_m: float = _variable(0.0, 0.020, "m", "h_g", "grouser height", minimum=0)
+    grouser_count: int = _variable(0, 24, "1", "N_g", "grouser count", minimum=0, whole=True)
+    wheel_count: int = _variable(4, 6, "1", "N_w", "wheel count", choices=(4, 6))
+    chassis_mass_kg: float = _variable(0.5, 50.0, "kg", "m_c", "chassis mass", above=0)
+    wheelbase_m: float = _variable(0.3, 1.2, "m", "L_wb", "wheelbase", above=0)
+    solar_area_m2: float = _variable(0.1, 1.5, "m2", "A_s", "solar array area", above=0)
+    battery_capacity_wh: float = _variable(5.0, 500.0, "Wh", "C_b", "battery capacity", above=0)
+    avionics_power_w: float = _variable(5.0, 40.0, "W", "P_a", "avionics power", above=0)
+    peak_wheel_torque_nm: float = _variable(0.05, 20.0, "N m", "T_hub", "peak hub torque", above=0)
 
     @property
     def wheel(self):
@@ -89,20 +61,17 @@ class Design(Record):
         return Wheel.trusted(together(**{name: np.shape(value) for name, value in values.items()}), values)
 
 
+DESIGN_SPACE = {f.name: f.metadata["axis"] for f in fields(Design)}
+"""The eleven design variables with their search range (the paper's Table 1), unit, symbol and label."""
+
+
 @dataclass(frozen=True)
 class Problem:
     """How a scenario is posed to the optimiser; the defaults are the paper's for its traverse missions.
 
-    Parameters
-    ----------
-    objectives : dict of str to str
-        Performance fields with a direction, "max" or "min".
-    constraints : tuple of (str, str, float)
-        Performance field, ">=" or "<=", and limit.
-    traverse_limit_km : float, optional
-        Replaces the scenario's own limit during the search.
-    seed : int, optional
-        Seed of the paper's run.
+    `objectives` has Performance fields with a direction, "max" or "min"; `constraints` triples of Performance field,
+    ">=" or "<=", and limit; `traverse_limit_km` replaces the scenario's own limit during the search; `seed` is that of
+    the paper's run.
     """
     objectives: dict = field(default_factory=lambda: {"range_km": "max", "total_mass_kg": "min",
                                                       "slope_capability_deg": "max"})
@@ -116,67 +85,31 @@ class Problem:
 
 @dataclass(frozen=True)
 class Scenario(Record):
-    """Where a rover drives, for how long, and what it must carry.
-
-    Parameters
-    ----------
-    name : str
-        A label; nothing is computed from it.
-    latitude_deg : float or ndarray
-        -90 to 90, north positive.
-    soil : Soil
-    duration_earth_days : float
-        Mission length in days of 24 h, positive; one number (it sets the number of time steps).
-    slope_deg : float or ndarray
-        Slope climbed throughout, above -90 and below 90 degrees.
-    duty_cycle : float or ndarray
-        Share of the time spent driving, 0 to 1.
-    traverse_limit_km : float or ndarray
-        The rover stops there; zero or more, infinity for no limit.
-    payload_mass_kg, payload_power_w : float or ndarray
-        Zero or more.
-    required_obstacle_height_m : float or ndarray
-        Obstacle that the rover must climb, zero or more.
-    maximum_speed_m_s : float or ndarray
-        Speed that operations allow, positive; infinity, the paper's, for no limit.
-    panel_tilt_deg : float or ndarray
-        From the horizontal, 0 to 180.
-    panel_azimuth_deg : float or ndarray
-        Direction that the panel faces, clockwise from north, -360 to 360.
-    start_utc : str, optional
-        ISO date and time of the start, for the real sun; None for the paper's, on the equator, rising at the start.
-    longitude_deg : float or ndarray
-        -180 to 360, east positive; matters with `start_utc` only.
-    skyline : rdk.sky.Skyline or sequence of float, optional
-        What hides the sun, such as `rdk.skyline("shackleton_rim")`, or elevations (deg) evenly spaced from north
-        clockwise; the share of the solar disc above it multiplies the power. None for the paper's level cut.
-    problem : Problem
-        How `pareto_front` poses the mission when it is told nothing else.
-
-    Raises
-    ------
-    ValueError
-        If a value is outside these limits, or if array lengths disagree.
-    """
+    """Where a rover drives, for how long, and what it must carry."""
     example = "rdk.scenario('polar_prospecting')"
 
-    name: str
-    latitude_deg: float = number(-90, 90)
-    soil: Soil
-    duration_earth_days: float = number(above=0, maximum=3660, scalar=True)
-    slope_deg: float = number(above=-90, below=90)
-    duty_cycle: float = number(0, 1)
-    traverse_limit_km: float = number(0, infinite=True, default=math.inf)
+    name: str = described("A label; nothing is computed from it.")
+    latitude_deg: float = number(-90, 90, doc="North positive.")
+    soil: Soil = described("Everywhere the same.")
+    duration_earth_days: float = number(above=0, maximum=3660, scalar=True, doc="One number: it sets the time steps.")
+    slope_deg: float = number(above=-90, below=90, doc="Climbed throughout.")
+    duty_cycle: float = number(0, 1, doc="Share of the time spent driving.")
+    traverse_limit_km: float = number(0, infinite=True, default=math.inf, doc="The rover stops there.")
     payload_mass_kg: float = number(0, default=0.0)
     payload_power_w: float = number(0, default=0.0)
-    required_obstacle_height_m: float = number(0, default=0.0)
-    panel_tilt_deg: float = number(0, 180, default=0.0)
-    panel_azimuth_deg: float = number(-360, 360, default=180.0)
-    maximum_speed_m_s: float = number(above=0, infinite=True, default=math.inf)
-    start_utc: str | None = None
-    longitude_deg: float = number(-180, 360, default=0.0)
-    skyline: Skyline | None = field(default=None, repr=False)
-    problem: Problem = field(default_factory=Problem, repr=False)
+    required_obstacle_height_m: float = number(0, default=0.0, doc="Obstacle that the rover must climb.")
+    panel_tilt_deg: float = number(0, 180, default=0.0, doc="From the horizontal.")
+    panel_azimuth_deg: float = number(-360, 360, default=180.0, doc="Where the panel faces, clockwise from north.")
+    maximum_speed_m_s: float = number(above=0, infinite=True, default=math.inf, doc="Speed that operations allow.")
+    start_utc: str | None = described("ISO date and time of the start, for the real sun; None for the paper's, on the "
+                                      "equator, rising at the start.", default=None)
+    longitude_deg: float = number(-180, 360, default=0.0, doc="East positive; matters with `start_utc` only.")
+    skyline: Skyline | None = described(
+        "What hides the sun, such as `rdk.skyline('shackleton_rim')`, or elevations (deg) evenly spaced from north "
+        "clockwise; the share of the solar disc above it multiplies the power. None for the paper's level cut.",
+        default=None, repr=False)
+    problem: Problem = described("How `pareto_front` poses the mission when it is told nothing else.",
+                                 default_factory=Problem, repr=False)
 
     def __post_init__(self):
         if self.start_utc is not None:
@@ -286,13 +219,7 @@ class Model(Record):
 
     @classmethod
     def engineering(cls, **changes):
-        """What a careful engineer would switch on: the `engineering` column of `data/constants.csv`.
-
-        Parameters
-        ----------
-        changes
-            Other fields, or other values of these.
-        """
+        """What a careful engineer would switch on (column `engineering` of `data/constants.csv`), with `changes`."""
         return cls(**dict(wheel_web_factor=0.5, frame_mass_kg_m2=2.0, motor_droop=1.0, stop_at_limit=1, exact_floor=1)
                    | changes)
 

@@ -8,14 +8,14 @@ Limits: constant slope, homogeneous soil, equal wheel loads; without `Scenario.s
 sun on the equator, without `skyline` a level horizon. The thermal cases know neither: they are the paper's noon and
 night at the latitude. The range is what the energy allows under the duty cycle, not an operational estimate.
 """
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from inspect import signature
 
 import numpy as np
 
 from . import stability, terramechanics, thermal
-from ._fields import Later, Record, require, together
+from ._fields import Later, Record, described, require, together
 from ._march import TraverseLog, cruise_speed, shaped, traverse
 from .design import Design, Model, Scenario, warn_outside
 from .mass import MassBreakdown, mass_breakdown
@@ -26,132 +26,63 @@ MASS_COEFFICIENTS = tuple(n for n in signature(mass_breakdown).parameters if n i
 
 @dataclass(frozen=True)
 class Performance(Record):
-    """What a design does on a mission; floats and bools for one design, arrays for a population.
-
-    Attributes
-    ----------
-    range_km : float or ndarray
-        Distance driven, at most the scenario's limit; 0 for stalled or buried designs.
-    total_mass_kg : float or ndarray
-        With payload.
-    slope_capability_deg : float or ndarray
-        Steepest slope climbed at the capability slip, cut at the search limit.
-    energy_balance_pct : float or ndarray
-        (generated - consumed) / consumed in percent, by the trapezoidal rule over the hourly samples; as in the
-        original release nothing is recorded at t = 0, so the last sample counts half.
-    stalled : bool or ndarray
-        No slip develops the required pull, or the torque exceeds the peak hub torque.
-    thermal_survival : bool or ndarray
-        Hot and cold case inside the operating limits. A flag only: `feasible` leaves it out, as the paper does.
-    feasible : bool or ndarray
-        Neither stalled nor buried, energy balance not negative, range above 0, required obstacle climbed.
-    buried : bool or ndarray
-        No entry angle carries the load: slip, sinkage and torque are NaN.
-    slip, sinkage_m, wheel_torque_nm : float or ndarray
-        At the slip balance on the scenario slope.
-    cruise_speed_m_s : float or ndarray
-        While driving: the lower of the energy-balance speed and the hub's no-load speed; 0 if stalled.
-    energy_balance_speed_m_s : float or ndarray
-        The paper's energy-balance speed, before the hub caps it; 0 if stalled or without surplus power.
-    hub_speed_limited : bool or ndarray
-        The hub, not the energy, sets the cruise speed.
-    average_solar_power_w : float or ndarray
-        Mission mean.
-    final_soc, minimum_soc : float or ndarray
-        State of charge at the end, and its lowest value.
-    hot_temperature_c, cold_temperature_c : float or ndarray
-        Enclosure at noon and in the lunar night.
-    obstacle_capability_m : float or ndarray
-        0.5 r rigid, 1.25 r rocker-bogie (by default).
-    ground_pressure_kpa : float or ndarray
-        Mean vertical pressure under a wheel at the slip balance, in kPa: its load over the wheel's width times the
-        length of its contact, sqrt(z (2 r - z)) at sinkage z. The paper has no such figure; a constraint on it is one
-        remedy for the wheels that shrink to the search bound.
-    sliding : bool or ndarray
-        On a descent the wheels cannot brake: the pull at the lowest slip exceeds the demand. Then `stalled`.
-    unserved_h : float or ndarray
-        Hours in which avionics or payload are not fully supplied: an empty pack and too little sun. In whole time
-        steps, without `Model.exact_floor`.
-    arrival_h : float or ndarray
-        Hour at which the traverse limit is reached; infinity if never.
-    hot_survival, cold_survival : bool or ndarray
-        The two halves of `thermal_survival`: noon below the upper limit, night above the lower one.
-    structure_share : float or ndarray
-        Chassis mass over total mass.
-    wheel_gap_m : float or ndarray
-        Wheelbase less the length that the wheels of one side take up: 2 (r + h_g) on four, 4 (r + h_g) on six.
-        Negative where they overlap, which no model forbids.
-    tip_over_deg : float or ndarray
-        Least slope at which the standing rover tips over, in any direction; `rdk.stability` has its assumptions.
-    mass : MassBreakdown
-    log : TraverseLog or None
-        Hour by hour, for one design only.
-    """
+    """What a design does on a mission; floats and bools for one design, arrays for a population."""
     example = "rdk.evaluate(design, scenario)"
     apart = ("log",)                                     # its arrays run over time
 
-    range_km: float
-    total_mass_kg: float
-    slope_capability_deg: float
-    energy_balance_pct: float
-    stalled: bool
-    thermal_survival: bool
-    feasible: bool
-    buried: bool
-    slip: float
+    range_km: float = described("Distance driven, at most the scenario's limit; 0 for stalled or buried designs.")
+    total_mass_kg: float = described("With payload.")
+    slope_capability_deg: float = described("Steepest slope climbed at the capability slip, cut at the search limit.")
+    energy_balance_pct: float = described(
+        "(generated - consumed) / consumed, by the trapezoidal rule over the hourly samples; as in the original "
+        "release nothing is recorded at t = 0, so the last sample counts half.")
+    stalled: bool = described("No slip develops the required pull, or the torque exceeds the peak hub torque.")
+    thermal_survival: bool = described(
+        "Hot and cold case inside the operating limits. A flag only: `feasible` leaves it out, as the paper does.")
+    feasible: bool = described(
+        "Neither stalled nor buried, energy balance not negative, range above 0, required obstacle climbed.")
+    buried: bool = described("No entry angle carries the load: slip, sinkage and torque are NaN.")
+    slip: float = described("At the slip balance on the scenario slope, as are sinkage and torque.")
     sinkage_m: float
     wheel_torque_nm: float
-    cruise_speed_m_s: float
-    energy_balance_speed_m_s: float
-    hub_speed_limited: bool
-    average_solar_power_w: float
-    final_soc: float
+    cruise_speed_m_s: float = described(
+        "While driving: the lower of the energy-balance speed and the hub's no-load speed; 0 if stalled.")
+    energy_balance_speed_m_s: float = described("Before the hub caps it; 0 if stalled or without surplus power.")
+    hub_speed_limited: bool = described("The hub, not the energy, sets the cruise speed.")
+    average_solar_power_w: float = described("Mission mean.")
+    final_soc: float = described("State of charge at the end.")
     minimum_soc: float
-    hot_temperature_c: float
-    cold_temperature_c: float
-    obstacle_capability_m: float
-    ground_pressure_kpa: float
-    sliding: bool
-    unserved_h: float
-    arrival_h: float = Later()
-    hot_survival: bool
-    cold_survival: bool
-    structure_share: float
-    wheel_gap_m: float
-    tip_over_deg: float = Later()
+    hot_temperature_c: float = described("Enclosure at noon.")
+    cold_temperature_c: float = described("Enclosure in the lunar night.")
+    obstacle_capability_m: float = described("0.5 r rigid, 1.25 r rocker-bogie (by default).")
+    ground_pressure_kpa: float = described(
+        "Mean vertical pressure under a wheel at the slip balance: its load over the wheel's width times the length of "
+        "its contact, sqrt(z (2 r - z)) at sinkage z. The paper has no such figure; a constraint on it is one remedy "
+        "for the wheels that shrink to the search bound.")
+    sliding: bool = described(
+        "On a descent the wheels cannot brake: the pull at the lowest slip exceeds the demand. Then `stalled`.")
+    unserved_h: float = described(
+        "Time in which avionics or payload are not fully supplied: an empty pack and too little sun. In whole time "
+        "steps, without `Model.exact_floor`.")
+    arrival_h: float = Later("When the traverse limit is reached; infinity if never.")
+    hot_survival: bool = described("Noon below the upper limit: half of `thermal_survival`.")
+    cold_survival: bool = described("Night above the lower limit: its other half.")
+    structure_share: float = described("Chassis mass over total mass.")
+    wheel_gap_m: float = described(
+        "Wheelbase less the length that the wheels of one side take up: 2 (r + h_g) on four, 4 (r + h_g) on six. "
+        "Negative where they overlap, which no model forbids.")
+    tip_over_deg: float = Later("Least slope at which the standing rover tips over, in any direction; "
+                                "`rdk.stability` has its assumptions.")
     mass: MassBreakdown
-    log: TraverseLog | None = field(default=None, compare=False)
+    log: TraverseLog | None = described("Hour by hour, for one design only.", default=None, compare=False)
 
 
 def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> Performance:
     """Performance of a design, or of a population, on a mission.
 
-    Parameters
-    ----------
-    design : Design
-        One design, or arrays of them.
-    scenario : Scenario
-        Any field but the duration may be an array; it broadcasts with the design.
-    model : Model
-        Coefficients; any field but the time step may be an array.
-
-    Returns
-    -------
-    Performance
-        With the broadcast shape of all inputs. Inside a population nothing raises: a lane without a solution is
-        infeasible.
-
-    Raises
-    ------
-    TypeError
-        If an argument is not a Design, Scenario or Model.
-    ValueError
-        If array lengths disagree.
-
-    Warns
-    -----
-    UserWarning
-        Once, naming the variables, where a design lies outside DESIGN_SPACE.
+    Any field but the mission's duration and the model's time step may be an array; all broadcast, and so does the
+    result. Inside a population nothing raises: a lane without a solution is infeasible. One UserWarning names the
+    variables where a design lies outside DESIGN_SPACE.
 
     Examples
     --------

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ._fields import Shown, check, require, unknown
+from ._fields import Shown, check, limits_of, require, unknown
 from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import Performance, evaluate
 from .terramechanics import Soil
@@ -74,13 +74,12 @@ def _limits(bounds):
     limits = {name: (v.low, v.high) for name, v in DESIGN_SPACE.items()}
     if bounds is not None and not isinstance(bounds, dict):
         raise ValueError(f"bounds must be a dictionary of variables with pairs (low, high); got {bounds!r}")
-    rules = {f.name: f.metadata for f in dataclasses.fields(Design)}
     for name, pair in (bounds or {}).items():
         if name not in limits:
             raise unknown("bounds: no design variable", name, list(limits))
         if np.shape(pair) != (2,):
             raise ValueError(f"bounds of {name} must be a pair (low, high); got {pair!r}")
-        low, high = (check(f"bounds of {name}", x, **rules[name]) for x in pair)
+        low, high = (check(f"bounds of {name}", x, **limits_of(Design)[name]) for x in pair)
         if low > high:
             raise ValueError(f"bounds of {name} must rise; got {pair!r}")
         limits[name] = low, high
@@ -155,7 +154,7 @@ def _single(**records):
 def replaced(design: Design, scenario: Scenario, model: Model, changes: dict) -> tuple[Design, Scenario, Model]:
     """Design, scenario and model with fields changed, each found by its name in Design, Scenario, Soil or Model."""
     groups = {Design: {}, Scenario: {}, Soil: {}, Model: {}}
-    names = {kind: {f.name for f in dataclasses.fields(kind) if f.metadata} for kind in groups}
+    names = {kind: limits_of(kind) for kind in groups}
     for name, value in changes.items():
         kind = next((kind for kind, known in names.items() if name in known), None)
         if kind is None:

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arc, _contact
-from ._fields import Record, check, number, together, unknown
+from ._fields import Record, check, described, number, together, unknown
 
 SLIP_MIN, SLIP_MAX = -0.9, 0.95                          # where the slip balance is sought
 CAPABILITY_SLIP, CAPABILITY_LIMIT_DEG = 0.6, 35.0        # peak-pull convention; steepest slope reported
@@ -34,55 +34,26 @@ TRANSITIONS = {"paper": (0.4, 0.2), "imposed-arc": (0.18, 0.32)}         # c_1 a
 
 @dataclass(frozen=True)
 class Soil(Record):
-    """Bekker, Mohr-Coulomb and Janosi-Hanamoto parameters of a soil; each a number or an array.
+    """Bekker, Mohr-Coulomb and Janosi-Hanamoto parameters of a soil.
 
-    Parameters
-    ----------
-    sinkage_exponent : float or ndarray
-        n of Bekker's law, positive, dimensionless.
-    cohesive_modulus_kn_m_n1 : float or ndarray
-        k_c in kN/m^(n+1). Fits to firm soil may be negative; k_c / b + k_phi must stay positive.
-    frictional_modulus_kn_m_n2 : float or ndarray
-        k_phi in kN/m^(n+2), positive.
-    cohesion_kpa : float or ndarray
-        c in kPa, zero or more.
-    friction_angle_deg : float or ndarray
-        phi in degrees, 0 to below 90.
-    shear_modulus_mm : float or ndarray
-        Shear-deformation modulus K in mm, positive.
-    name : str
-        A label; nothing is computed from it.
-
-    References
-    ----------
     Bekker (1969); Janosi & Hanamoto (1961); Heiken et al. (1991), chapter 9.
     """
-    sinkage_exponent: float = number(above=0, maximum=3)
-    cohesive_modulus_kn_m_n1: float = number()
-    frictional_modulus_kn_m_n2: float = number(above=0)
-    cohesion_kpa: float = number(0)
-    friction_angle_deg: float = number(0, below=90)
-    shear_modulus_mm: float = number(above=0, default=18.0)
-    name: str = ""
+    sinkage_exponent: float = number(above=0, maximum=3, doc="n of Bekker's law.")
+    cohesive_modulus_kn_m_n1: float = number(doc="k_c. Fits to firm soil may be negative; k_c / b + k_phi is not.")
+    frictional_modulus_kn_m_n2: float = number(above=0, doc="k_phi.")
+    cohesion_kpa: float = number(0, doc="c.")
+    friction_angle_deg: float = number(0, below=90, doc="phi.")
+    shear_modulus_mm: float = number(above=0, default=18.0, doc="Shear-deformation modulus K.")
+    name: str = described("A label; nothing is computed from it.", default="")
 
 
 @dataclass(frozen=True)
 class Wheel(Record):
-    """A rigid wheel, smooth or with grousers; each field a number or an array.
-
-    Parameters
-    ----------
-    radius_m, width_m : float or ndarray
-        r and b in metres, positive.
-    grouser_height_m : float or ndarray
-        h_g in metres, zero or more.
-    grouser_count : int or ndarray
-        N_g, a whole number, zero or more.
-    """
-    radius_m: float = number(above=0)
-    width_m: float = number(above=0)
-    grouser_height_m: float = number(0, default=0.0)
-    grouser_count: int = number(0, whole=True, default=0)
+    """A rigid wheel, smooth or with grousers."""
+    radius_m: float = number(above=0, doc="r.")
+    width_m: float = number(above=0, doc="b.")
+    grouser_height_m: float = number(0, default=0.0, doc="h_g.")
+    grouser_count: int = number(0, whole=True, default=0, doc="N_g.")
 
 
 class KernelOptions(TypedDict, total=False):

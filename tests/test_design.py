@@ -26,7 +26,7 @@ MAY_BE_NONE = {"transition_c1", "transition_c2"}
 
 
 def numeric(record):
-    return [f.name for f in dataclasses.fields(record) if f.metadata]
+    return [f.name for f in dataclasses.fields(record) if "minimum" in f.metadata]
 
 
 EVERY = [(record, name) for record in (DESIGN, SCENARIO, MODEL, SOIL, DESIGN.wheel)
