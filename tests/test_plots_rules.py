@@ -55,80 +55,6 @@ def test_variables_on_fronts_draws_quantiles():
     assert tells_apart(lines.values()) and legend_words(figure) == {"mare", "polar"}
 
 
-def test_capability_against_width_draws_every_case():
-    width = np.array([30.0, 80.0])
-    panels = {"5 N": {"K = 18 mm": np.array([33.0, 30.0]), "K = 2 mm": np.array([49.0, 54.0])},
-              "16 N": {"K = 18 mm": np.array([34.0, 33.0]), "K = 2 mm": np.array([45.0, 49.0])}}
-    figure = plots.capability_against_width(width, panels)
-    for ax, (title, series) in zip(figure.axes, panels.items()):
-        assert ax.get_title() == title
-        for label, values in series.items():
-            assert_array_equal(drawn(ax)[label].get_xydata(), np.column_stack([width, values]))
-        assert tells_apart(drawn(ax).values())
-    assert labels(figure) == ({"wheel width (mm)"}, {"slope capability (deg)"})
-
-
-@pytest.mark.parametrize("count", [1, 2, 3, 4])
-def test_front_points_holds_any_number_of_missions(count):
-    panels = {f"mission {i}": {"a": (np.array([1.0 + i]), np.array([2.0])),
-                               "b": (np.array([3.0]), np.array([4.0 + i]))} for i in range(count)}
-    figure = plots.front_points(panels, "total mass (kg)", "wheel width (mm)", {"bound": 3})
-    for ax, (title, cases) in zip(figure.axes, panels.items()):
-        assert ax.get_title() == title and "bound" in [t.get_text() for t in ax.texts]
-        for label, (x, y) in cases.items():
-            assert_array_equal(drawn(ax)[label].get_xydata(), np.column_stack([x, y]))
-        assert tells_apart(drawn(ax).values())
-    assert labels(figure) == ({"total mass (kg)"}, {"wheel width (mm)"})
-
-
-def test_battery_by_patience_draws_one_line_a_seed():
-    rows = [dict(scenario=name, seed=seed, generations=g, battery_median_wh=10.0 * seed + g)
-            for name in ("polar", "mare") for seed in (1, 2) for g in (60, 180)]
-    figure = plots.battery_by_patience(pd.DataFrame(rows), {"polar": 150, "mare": 15})
-    for ax, published in zip(figure.axes, (150, 15)):
-        seeds = [line for line in ax.lines if len(line.get_xdata()) == 2 and line.get_marker() in plots.MARKERS]
-        assert sorted(tuple(line.get_ydata()) for line in seeds) == [(70.0, 190.0), (80.0, 200.0)]
-        assert tells_apart(seeds)
-        assert drawn(ax)["paper, one seed"].get_ydata()[0] == published
-    assert labels(figure) == ({"generations"}, {"median battery of the front (Wh)"})
-
-
-def test_battery_worth_draws_ranges_and_mass():
-    capacity = np.array([5.0, 500.0])
-    figure = plots.battery_worth(capacity, {"small": np.array([20.0, 18.0]), "large": np.array([35.0, 42.0])},
-                                 np.array([11.0, 17.0]))
-    left, right = figure.axes
-    assert_array_equal(drawn(left)["large"].get_ydata(), [35.0, 42.0])
-    assert_array_equal(right.lines[0].get_ydata(), [11.0, 17.0])
-    assert labels(figure) == ({"battery capacity (Wh)"}, {"range (km)", "total mass (kg)"})
-
-
-def test_rocker_bogie_share_is_in_percent_and_sorted():
-    table = pd.DataFrame(dict(scenario=["a", "a", "b", "b"], obstacle_height_m=[0.1, 0.0, 0.0, 0.1],
-                              four_wheels=[0.25, 1.0, 1.0, 0.0]))
-    ax = plots.rocker_bogie_share(table, 0.1).axes[0]
-    assert_array_equal(drawn(ax)["a"].get_xydata(), [[0, 0], [10, 75]])
-    assert_array_equal(drawn(ax)["b"].get_ydata(), [0, 100])
-    assert tells_apart(drawn(ax).values())
-
-
-# ---- sensitivity -------------------------------------------------------------------------------------------
-
-def test_frontiers_are_the_longest_range_up_to_a_mass():
-    case = np.array([20.0, 10.0, 15.0]), np.array([30.0, 10.0, 5.0])
-    empty = np.array([]), np.array([])
-    frontiers = {f"mission {i}": {0.7: empty, 0.85: case, 1.0: case, 1.15: case, 1.3: case} for i in range(4)}
-    figure = plots.frontiers_by_scale(frontiers)
-    ax = figure.axes[0]
-    assert_array_equal(drawn(ax)["1"].get_xydata(), [[10, 10], [15, 10], [20, 30], [80, 30]])
-    assert any("no feasible design" in t.get_text() for t in ax.texts)
-    same_colour = {}
-    for line in drawn(ax).values():
-        same_colour.setdefault(line.get_color(), []).append(line.get_linestyle())
-    assert all(len(set(styles)) == len(styles) for styles in same_colour.values())
-    assert len({(line.get_linestyle(), line.get_color()) for line in drawn(ax).values()}) == 4
-
-
 def test_sobol_bars_show_the_largest_and_their_interval():
     rows = [dict(metric=m, input=f"input_{i}", first_order=0.1 * i, total_order=0.2 * i,
                  total_low=0.2 * i - 0.05, total_high=0.2 * i + 0.05)
@@ -154,16 +80,6 @@ def test_pull_intervals_draw_each_point_once():
     assert spans == [(1.0, 7.0), (2.0, 12.0)] and tells_apart(found.values())
 
 
-def test_family_rules_count_the_empty_ones():
-    table = pd.DataFrame(dict(family=["a", "a", "b", "b"], designs=[50, 50, 0, 50],
-                              share=[100.0, 50.0, np.nan, 0.0]))
-    figure = plots.family_rules(table, {"share": "share (%)"})
-    ax = figure.axes[0]
-    assert [t.get_text() for t in ax.get_yticklabels()] == ["a", "b\n(1 of 2 empty)"]
-    assert_array_equal(ax.lines[0].get_xdata(), [100.0, 50.0])
-    assert tells_apart(ax.lines) and labels(figure)[0] == {"share (%)"}
-
-
 # ---- rediscovery -------------------------------------------------------------------------------------------
 
 FOUND = pd.DataFrame(dict(rover=["A", "B"], distance=[0.1, 0.9], in_class=[True, False]))
@@ -181,17 +97,6 @@ def test_rediscovery_distances_draw_front_centroid_and_chance():
     squares = [container.lines[0] for container in ax.containers if hasattr(container, "lines")]
     assert_array_equal(squares[0].get_ydata(), [0.2, 0.5])
     assert [t.get_text() for t in ax.get_xticklabels()] == ["A", "B"]
-
-
-def test_distance_by_patience_draws_every_rover_on_one_scale():
-    rows = pd.DataFrame([dict(rover=rover, generations=g, distance=distance) for rover, distance in
-                         (("A", 0.1), ("B", 1.2), ("C", 0.3)) for g in (8, 16)])
-    chances = pd.DataFrame(dict(rover=["A", "B", "C"], nearest_capped=[0.2, 0.4, 0.6]))
-    figure = plots.distance_by_patience(rows, chances)
-    for ax, name, chance in zip(figure.axes, "ABC", (0.2, 0.4, 0.6)):
-        assert ax.get_title() == name and ax.get_ylim()[1] > 1.2
-        assert_array_equal(ax.lines[0].get_xdata(), [8, 16])
-        assert_array_equal(ax.lines[1].get_ydata(), [chance, chance])
 
 
 # ---- the ledger --------------------------------------------------------------------------------------------
@@ -246,9 +151,3 @@ def test_ledger_filter_without_widgets_is_the_whole_table():
     bundle = plots.ledger_filter(LEDGER)._repr_mimebundle_()
     assert bundle["text/html"] == plots.ledger_html(LEDGER)
     assert bundle["text/plain"] == "3 numbers of the paper"
-
-
-def test_two_filters_do_not_disturb_each_other():
-    one, other = plots.ledger_filter(LEDGER), plots.ledger_filter(LEDGER)
-    one.verdict.value = "agrees"
-    assert len(one.shown) == 1 and len(other.shown) == 3

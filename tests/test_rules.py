@@ -1,4 +1,4 @@
-"""Rules read off fronts, families, sensitivities, rediscovery and the ledger's searches, at small budgets."""
+"""Rules read off fronts, families, sensitivities and rediscovery, at small budgets."""
 
 import dataclasses
 from concurrent.futures import ThreadPoolExecutor
@@ -10,9 +10,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import rdk
-from rdk import _contact as contact
 from rdk import catalog, rediscovery, rules, tradespace
-import ledger
 
 MARE, HIGHLAND = rdk.scenario("equatorial_mare_traverse"), rdk.scenario("highland_slope_capability")
 NAMES = rdk.scenario_names("canonical")
@@ -290,78 +288,3 @@ def test_light_designs_are_uniform_in_the_light_part_of_the_space(name):
         assert (abs(one.mean(0) - other.mean(0)) < 4 * error).all()        # four standard errors
     else:
         assert len(found) > len(plain), "the smaller box finds light designs where plain rejection starves"
-
-
-# ---- the ledger's searches ---------------------------------------------------------------------------------
-
-@pytest.fixture(scope="module")
-def small_ledger():
-    """The stochastic and cost rows with every search cut to a few generations of a small population."""
-    study, pareto_front = rdk.fronts, tradespace.pareto_front
-    rediscover, baselines = rediscovery.rediscover, rediscovery.baselines
-    asked = []
-
-    def small_study(*arguments, generations=60, **options):
-        asked.append((generations, options))
-        short = 10 if "obstacle_heights_m" in options else generations
-        return study(*arguments, population=12, generations=short, **options)
-
-    with pytest.MonkeyPatch.context() as patch:          # undone before any other test runs
-        patch.setattr(ledger, "fronts", small_study)
-        patch.setattr(ledger, "pareto_front", lambda scenario, **options: pareto_front(
-            scenario, population=12, **options | {"generations": 5}))
-        patch.setattr(rediscovery, "rediscover", lambda **options: rediscover(
-            population=12, **options | {"seeds": options["seeds"][:2]}))
-        patch.setattr(rediscovery, "baselines", lambda found, **options: baselines(found, **options | {"count": 500}))
-        patch.setattr(rules, "OBSTACLE_HEIGHTS_M", (0.0, 0.08, 0.12))
-        table = ledger.paper_ledger(("stochastic", "cost")).set_index("id")
-    return table, asked
-
-
-def test_ledger_computes_every_row(small_ledger):
-    table, _ = small_ledger
-    targets = catalog.table("paper_targets.csv").query("kind != 'deterministic'")
-    assert list(table.index) == list(targets.id)
-    assert table.why.map(type).eq(str).all()
-    assert table.agrees[["solves_per_evaluation", "front_seconds", "fixed_plus_hourly"]].isna().all()
-    assert table.agrees.drop(["solves_per_evaluation", "front_seconds", "fixed_plus_hourly"]).notna().all()
-
-
-def test_ledger_of_one_section():
-    table = ledger.paper_ledger(("deterministic",), sections=["flown rovers"])
-    assert set(table.section) == {"flown rovers"} and len(table) == 8
-    with pytest.raises(ValueError, match="sections must be among terramechanics validation, .*; got 'weather'"):
-        ledger.paper_ledger(sections=["weather"])
-
-
-def test_ledger_says_why_where_it_disagrees(small_ledger):
-    table, _ = small_ledger
-    silent = table[~table.agrees.fillna(True).astype(bool) & (table.why.str.len() <= 20)]
-    assert list(silent.index) == []
-
-
-def test_ledger_is_computed_and_not_typed(small_ledger):
-    """At a tiny budget the searches fall short, and the rows say so."""
-    table, _ = small_ledger
-    assert not table.agrees[["hv60_polar", "hv60_mare"]].any()
-    assert table.ours["highland_070"] == "infeasible" and table.ours["random_pair"] > 1
-
-
-def test_every_study_of_the_ledger_runs_once_at_the_papers_budget(small_ledger):
-    _, studies = small_ledger
-    assert sorted(generations for generations, _ in studies) == [60] * 12 + [90]
-    asked = [option for _, options in studies for option in options if option not in ("executor", "seeds")]
-    assert sorted(asked) == ["obstacle_heights_m"] * 4 + ["shear_scales"] * 4
-
-
-def test_seed_offset_moves_the_searches(monkeypatch):
-    calls = []
-    monkeypatch.setattr(ledger, "fronts", lambda scenarios, **options: calls.append(scenarios[0].problem.seed) or {})
-    assert ledger.Searches(seed_offset=100).canonical == {}
-    assert sorted(calls) == [112, 113, 114, 115]
-
-
-def test_stress_integrals_count_what_the_kernel_does():
-    before = contact.forces
-    mean = ledger.stress_integrals(rdk.random_designs(50, seed=0), MARE)
-    assert 8 < mean < 30 and contact.forces is before, "and the kernel is left as it was"

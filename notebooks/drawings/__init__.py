@@ -12,14 +12,9 @@ from .wheel import (  # noqa: F401
 from .mission import (  # noqa: F401
     EVALUATION_FLOW, EVALUATION_RESULTS, demand_chances, mass_errors, mass_shares, mission_logs, peak_solar,
     power_flows, rovers_on_missions, system_diagram)
-from .fronts import (  # noqa: F401
-    SLOPE_BANDS, along_a_front, decoded_genes, dominated_designs, front_history, generation_budget,
-    hub_speed_plateau, pareto_fronts, ranks_and_crowding, searches, seed_scatter, variation_operators,
-    weighted_sums)
+from .fronts import dominated_designs, ranks_and_crowding, weighted_sums  # noqa: F401
 from .rules import (  # noqa: F401
-    VERDICTS, battery_by_patience, battery_worth, capability_against_width, distance_by_patience,
-    family_rules, front_points, frontiers_by_scale, ledger_filter, ledger_html, ledger_text,
-    ledger_verdicts, pull_intervals, rediscovery_distances, rocker_bogie_share, sobol_bars,
-    variables_on_fronts, verdict)
+    VERDICTS, ledger_filter, ledger_html, ledger_text, ledger_verdicts, pull_intervals, rediscovery_distances,
+    sobol_bars, variables_on_fronts, verdict)
 from .site import (  # noqa: F401
     line_of_sight, marches, polar_sun, shares_of_light, skyline_and_sun, slope_and_tilt, ways_on_a_map)

@@ -6,13 +6,13 @@ from functools import cache
 
 import ledger
 import numpy as np
+import pandas as pd
 
-from rdk import catalog
-from rdk.design import Design
+from rdk import catalog, validation
+from rdk.design import Design, Model
 from rdk.mission import evaluate
-from rdk.rediscovery import unit_cube
+from rdk.rediscovery import baselines, unit_cube
 from rdk.sampling import intervals
-from rdk.tradespace import pareto_front
 
 from .judging import Exercise
 from .shared import mare, rashid
@@ -29,14 +29,22 @@ EXERCISES["09.1"] = Exercise(
     {"Strength goes with the tangent of the angle, not with the angle.": lambda: 35 / 46,
      "The other way round: from the larger angle to the smaller.":
         lambda: np.tan(np.radians(46)) / np.tan(np.radians(35)),
+     "That is the loss; the factor is what is left.": lambda: 1 - np.tan(np.radians(35)) / np.tan(np.radians(46)),
      "Degrees went into a function that takes radians.": lambda: np.tan(35) / np.tan(46),
      "The tangent, not the sine.": lambda: np.sin(np.radians(35)) / np.sin(np.radians(46))}, within=0.01)
 
+@cache
+def _stalls_pct(*without):
+    """Share of draws, in percent, that stall Rashid-1 on the mare, some inputs held at their nominal values."""
+    table = [row for row in catalog.rows("uncertainties.csv") if row["name"] not in without]
+    return 100 * intervals(rashid(), mare(), table=table).low["stalled"]
+
+
 EXERCISES["09.2"] = Exercise(
-    "number", lambda: 0.9**17, "All of them must be inside: multiply.",
-    {"That is the chance of one.": lambda: 0.9,
-     "That is the chance that at least one is outside.": lambda: 1 - 0.9**17,
-     "That is the chance that all are outside.": lambda: 0.1**17}, within=0.02)
+    "number", lambda: _stalls_pct("friction_angle_deg"), "`low[\"stalled\"]` is the share of draws; times 100.",
+    {"That is with every row of the table.": _stalls_pct,
+     "As a share; the question asks for percent.": lambda: _stalls_pct("friction_angle_deg") / 100,
+     "That holds the shear scale instead.": lambda: _stalls_pct("shear_scale")}, within=0.1)
 
 
 def _capabilities(*angles_deg):
@@ -62,8 +70,9 @@ def _climbs_on_35(design):
     if not p.feasible:
         return "It does not drive the mission itself on that soil: " + ("it stalls." if p.stalled
                                                                         else "too little sun.")
-    low = intervals(design, scenario, level=0.8).low["slope_capability_deg"]
-    return "" if low >= 13 else f"Nine of ten draws climb {low:.1f} degrees only: too little margin."
+    share = intervals(design, scenario, draws=4096).share([("slope_capability_deg", ">=", 12)])
+    # 4,096 draws know the share to half a point
+    return "" if share >= 0.895 else f"12 degrees hold in {share:.1%} of the draws only: too little margin."
 
 
 def _climber():
@@ -78,7 +87,7 @@ EXERCISES["09.4"] = Exercise(
     {"It weighs": lambda: replace(_climber(), chassis_mass_kg=5.0),
      "it stalls": lambda: replace(_climber(), peak_wheel_torque_nm=0.1),
      "too little sun": lambda: replace(_climber(), avionics_power_w=32.0),
-     "too little margin": lambda: replace(_climber(), grouser_count=20)}, judge=_climbs_on_35)
+     "too little margin": lambda: replace(_climber(), grouser_count=12)}, judge=_climbs_on_35)
 
 
 # ---- 10 rediscovery ----------------------------------------------------------------------------------------
@@ -92,12 +101,18 @@ EXERCISES["10.1"] = Exercise(
      "That is the mean distance, from a simulation; the root mean square has a closed form.": lambda: 1.128},
     within=0.005)
 
+@cache
+def _nearest_of(chances, column="nearest_capped"):
+    """Mean distance of the nearest of some random designs to Rashid-1."""
+    one = pd.DataFrame(dict(rover=["Rashid-1"], front_designs=[chances]))
+    return baselines(one, count=8000)[column][0]
+
+
 EXERCISES["10.2"] = Exercise(
-    "number", lambda: 0.28**2 * 6,
-    "Each dimension is worth one sixth; how many sixths are in the square of the distance?",
-    {"The square of the distance, not the distance.": lambda: 0.28 * 6,
-     "Divide by 1/6, do not multiply.": lambda: 0.28**2 / 6,
-     "That is the share of the eight dimensions, not their number.": lambda: 0.28**2 * 6 / 8}, within=0.01)
+    "number", lambda: _nearest_of(22), "`nearest_capped` of Rashid-1, with 22 in the column `front_designs`.",
+    {"That is with 109 chances, those of the five merged fronts.": lambda: _nearest_of(109),
+     "That is without the ceiling.": lambda: _nearest_of(22, "nearest_feasible"),
+     "That is the 5 % quantile; the mean is asked for.": lambda: _nearest_of(22, "nearest_capped_low")}, within=0.04)
 
 
 @cache
@@ -146,17 +161,24 @@ EXERCISES["10.4"] = Exercise(
 # ---- 11 the paper's ledger ---------------------------------------------------------------------------------
 
 EXERCISES["11.1"] = Exercise(
-    "number", lambda: 100 * (0.792 - 0.764) / 0.778, "Width over value, in percent.",
-    {"That is half of the width, the distance from the middle.": lambda: 100 * 0.014 / 0.778,
-     "In percent of the value, not in units of the hypervolume.": lambda: 0.028,
-     "In percent: times one hundred.": lambda: 0.028 / 0.778}, within=0.01)
-
-EXERCISES["11.2"] = Exercise(
     "2 numbers", lambda: [39 * 0.1, 0.9**39], "First the mean number of failures, then the chance of none.",
     {"The first is the number that should agree; the question asks for those that differ.":
         lambda: [39 * 0.9, 0.9**39],
      "The second is the chance that at least one differs.": lambda: [39 * 0.1, 1 - 0.9**39],
      "All of them must hold, so the chances multiply.": lambda: [39 * 0.1, 0.9]}, within=0.03)
+
+
+@cache
+def _ticks(sections=("terramechanics validation", "mass validation"), **broken):
+    """How many deterministic rows of some sections agree with a broken model."""
+    return int(ledger.paper_ledger(("deterministic",), ledger.Searches(model=Model(**broken)), sections).agrees.sum())
+
+
+EXERCISES["11.2"] = Exercise(
+    "number", lambda: _ticks(avionics_mass_per_power_kg_w=0.1),
+    "Give `Searches` the broken model, `paper_ledger` those searches and the two sections; add up `agrees`.",
+    {"That is the number of rows.": lambda: 16.0,
+     "That is the number that no longer agree.": lambda: 16 - _ticks(avionics_mass_per_power_kg_w=0.1)}, within=0.001)
 
 EXERCISES["11.3"] = Exercise(
     "True or False", lambda: all(
@@ -166,18 +188,23 @@ EXERCISES["11.3"] = Exercise(
 
 
 @cache
-def _polar_batteries():
-    """Median battery of the polar front at three shifts of its seed."""
-    polar = catalog.scenario("polar_prospecting")
-    return [float(np.median(pareto_front(polar, seed=polar.problem.seed + shift).designs.battery_capacity_wh))
-            for shift in (0, 100, 200)]
+def _array_densities(every=True):
+    """Least and largest areal density of the array, in kg/m2, with which all seven masses (or their median) agree."""
+    accept = catalog.table("paper_targets.csv").set_index("id").accept
+    rows = dict(tenacious="Tenacious", cadre="CADRE-unit", rashid="Rashid-1", sojourner="Sojourner", pragyan="Pragyan",
+                yutu2="Yutu-2", marsokhod="MARSOKHOD")
+
+    def fits(density):
+        table = validation.published_masses(Model(solar_areal_density_kg_m2=density)).set_index("rover")
+        return np.mean([ledger.accepts(accept["mass_" + name], table.predicted_mass_kg[rover])
+                        for name, rover in rows.items()])
+
+    shares = {density: fits(density) for density in np.arange(2.3, 2.701, 0.01).round(2)}
+    kept = [density for density, share in shares.items() if share >= (1 if every else 0.5)]
+    return [min(kept), max(kept)]
 
 
 EXERCISES["11.4"] = Exercise(
-    "2 numbers", lambda: [100 * int(np.argmax(_polar_batteries())), max(_polar_batteries())],
-    "One search for each shift; the median battery of its designs; the largest of the three.",
-    {"That is the smallest of the three.":
-        lambda: [100 * int(np.argmin(_polar_batteries())), min(_polar_batteries())],
-     "First the shift, then the battery.": lambda: [max(_polar_batteries()),
-                                                    100 * int(np.argmax(_polar_batteries()))],
-     "That is the paper's own figure, of one seed.": lambda: [0, 150.0]}, within=0.02)
+    "2 numbers", _array_densities, "One call of `published_masses` for each value; keep those with seven agreements.",
+    {"With these, half of the rovers agree; the question asks for all seven.": lambda: _array_densities(False),
+     "First the lower, then the upper value.": lambda: _array_densities()[::-1]}, within=0.003)
