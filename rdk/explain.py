@@ -55,13 +55,16 @@ def binding(design, scenario, performance, model=Model()):
                                "the wheels, or shed mass.")
     if p.stalled and p.wheel_torque_nm > design.peak_wheel_torque_nm:
         also = " Traction fails as well." if p.slip >= model.slip_max else ""
-        return Binding("torque", f"Torque binds: climbing {scenario.slope_deg:g} deg takes {p.wheel_torque_nm:.2f} N m at "
+        return Binding("torque", f"Torque binds: climbing {scenario.slope_deg:g} deg takes {p.wheel_torque_nm:.2f} N m "
+                       "at "
                                  f"each wheel, the hub gives {design.peak_wheel_torque_nm:.2f} N m.{also}")
     if p.stalled:
-        return Binding("traction", f"Traction binds: no slip develops the pull that {scenario.slope_deg:g} deg demands; "
+        return Binding("traction", f"Traction binds: no slip develops the pull that {scenario.slope_deg:g} deg "
+                       "demands; "
                                    f"this rover climbs {p.slope_capability_deg:.1f} deg.")
     if p.average_solar_power_w <= base:
-        return Binding("sun", f"Sunlight binds: the array averages {p.average_solar_power_w:.1f} W, avionics and payload "
+        return Binding("sun", f"Sunlight binds: the array averages {p.average_solar_power_w:.1f} W, avionics and "
+                       "payload "
                               f"draw {base:.1f} W, and nothing is left for driving.")
     if scenario.duty_cycle == 0:
         return Binding("duty", "The duty cycle is 0: the rover never drives.")
@@ -79,7 +82,8 @@ def binding(design, scenario, performance, model=Model()):
             + f", the hub turns for {100 * p.cruise_speed_m_s:.1f} cm/s at most.",
         "sun": f"Sunlight binds: what the array yields above avionics and payload pays for "
                f"{100 * p.cruise_speed_m_s:.1f} cm/s.",
-        "battery": f"The battery binds: it falls to {100 * p.minimum_soc:.0f} %, and driving stops."}[key], detail + ".")
+        "battery": f"The battery binds: it falls to {100 * p.minimum_soc:.0f} %, and driving stops."}[key], detail
+                   + ".")
 
 
 def _gains(design, scenario, performance, model):
@@ -133,7 +137,8 @@ def verdict(design, scenario, performance, model=Model()):
               [(f"misses {metric.rsplit('_', 1)[0].replace('_', ' ')} {sign} {least:g}", float(getattr(p, metric)))]
               if not (value >= least if sign == ">=" else value <= least) and not (metric == "range_km" and value <= 0)]
     words = [drive, *bad, *missed]
-    return bool(p.range_km > 0 and not bad and not missed), ", ".join(words[:-1]) + ", and " * (len(words) > 1) + words[-1] + "."
+    return bool(p.range_km > 0 and not bad
+                and not missed), ", ".join(words[:-1]) + ", and " * (len(words) > 1) + words[-1] + "."
 
 
 def levers(design, scenario, performance, key, model=Model()):
@@ -162,7 +167,8 @@ def levers(design, scenario, performance, key, model=Model()):
         found = np.array([m - now[n] if n == "peak_wheel_torque_nm" else 0.0 for n, m in zip(names, more)]) - found
     words = {**{f: w for w, f in LEVERS.items()}, "solar_area_m2": "array", "wheel_radius_m": "wheel radius",
              "wheel_width_m": "wheel width", "grouser_height_m": "grouser height", "peak_wheel_torque_nm": "hub torque"}
-    rows = [(name, words[name], float(np.nan_to_num(gain)), unit) for name, gain, m in zip(names, found, more) if m > now[name]]
+    rows = [(name, words[name], float(np.nan_to_num(gain)), unit) for name, gain, m in zip(names, found, more)
+            if m > now[name]]
     return sorted(rows, key=lambda lever: -lever[2])
 
 
@@ -193,7 +199,8 @@ def limits(design, scenario, performance, model=Model()):
               f"{s.required_obstacle_height_m:g} m"),
         Limit("stalled", not p.stalled and not p.buried, "must drive the slope"),
         Limit("thermal_survival", bool(p.thermal_survival),
-              f"{p.cold_temperature_c:.0f} to {p.hot_temperature_c:.0f} °C, allowed {model.operating_temperature_min_c:g} "
+              f"{p.cold_temperature_c:.0f} to {p.hot_temperature_c:.0f} °C, allowed "
+              f"{model.operating_temperature_min_c:g} "
               f"to {model.operating_temperature_max_c:g}")]
 
 

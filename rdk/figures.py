@@ -13,6 +13,9 @@ import matplotlib
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
+from .rover_picture import rover_picture as rover_picture
+from .rover_picture import wheel_picture as wheel_picture
+
 BLUE, ORANGE, GREEN, BLACK, GREY = "#0072B2", "#D55E00", "#009E73", "#000000", "#767676"
 COLOURS = (BLUE, ORANGE, GREEN, BLACK)
 DASHES = ("-", "--", "-.", ":")

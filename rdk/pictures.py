@@ -14,15 +14,19 @@ import numpy as np
 from .rover_picture import contact, svg, wheel_picture
 
 SIZE = 600, 380
-LABELS = {"range_km": ("range", "km"), "total_mass_kg": ("mass", "kg"), "slope_capability_deg": ("slope capability", "°"),
-          "energy_balance_pct": ("energy balance", "%"), "cruise_speed_m_s": ("cruise speed", "m/s"), "slip": ("slip", ""),
-          "sinkage_m": ("sinkage", "m"), "wheel_torque_nm": ("wheel torque", "N m"), "final_soc": ("charge at the end", ""),
+LABELS = {"range_km": ("range", "km"), "total_mass_kg": ("mass", "kg"),
+          "slope_capability_deg": ("slope capability", "°"),
+          "energy_balance_pct": ("energy balance", "%"), "cruise_speed_m_s": ("cruise speed", "m/s"),
+          "slip": ("slip", ""),
+          "sinkage_m": ("sinkage", "m"), "wheel_torque_nm": ("wheel torque", "N m"),
+          "final_soc": ("charge at the end", ""),
           "minimum_soc": ("lowest charge", ""), "average_solar_power_w": ("mean sunlight", "W"),
           "hot_temperature_c": ("noon temperature", "°C"), "cold_temperature_c": ("night temperature", "°C"),
           "obstacle_capability_m": ("obstacle capability", "m"), "thermal_survival": ("survival of heat and cold", ""),
           "energy_balance_speed_m_s": ("energy-balance speed", "m/s"), "feasible": ("drives the mission", "")}
 """Words and unit of the metrics."""
-SHADES = np.array([(0, 32, 77), (49, 68, 107), (102, 105, 112), (149, 143, 120), (202, 185, 105), (255, 233, 69)], float)
+SHADES = np.array([(0, 32, 77), (49, 68, 107), (102, 105, 112), (149, 143, 120), (202, 185, 105), (255, 233, 69)],
+                  float)
 
 
 def label(name):
@@ -50,7 +54,7 @@ def shade(share):
     """A colour from dark blue to yellow for a share from 0 to 1; it also reads in grey."""
     place = float(np.clip(np.nan_to_num(share), 0, 1)) * (len(SHADES) - 1)
     i = min(int(place), len(SHADES) - 2)
-    return "#%02x%02x%02x" % tuple((SHADES[i] + (place - i) * (SHADES[i + 1] - SHADES[i])).round().astype(int))
+    return "#" + bytes((SHADES[i] + (place - i) * (SHADES[i + 1] - SHADES[i])).round().astype("u1")).hex()
 
 
 def span(*values, zero=False, room=0.06):
@@ -67,7 +71,8 @@ def span(*values, zero=False, room=0.06):
 def ticks(low, high, count=5, log=False):
     """Round numbers between two limits."""
     if log:
-        found = [m * 10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1) for m in (1, 2, 5)]
+        found = [m * 10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+                 for m in (1, 2, 5)]
         return [t for t in found if low <= t <= high]
     raw = (high - low) / count
     unit = 10.0**math.floor(math.log10(raw))
@@ -96,11 +101,13 @@ class Axes:
         """Grid, ticks, the name of the upright axis above, that of the other below."""
         x0, y0, x1, y1 = self.box
         for t in ticks(*self.ys, count):
-            self.parts.append(f'<path class="g" d="M{x0} {self.y(t):.1f}H{x1}"/>' + text(x0 - 6, self.y(t) + 4, f"{t:.5g}", "q s e"))
+            self.parts.append(f'<path class="g" d="M{x0} {self.y(t):.1f}H{x1}"/>'
+                              + text(x0 - 6, self.y(t) + 4, f"{t:.5g}", "q s e"))
         for t in ticks(*self.xs, max(int((x1 - x0) / 90), 2), self.log):
             self.parts.append(f'<path class="g" d="M{self.x(t):.1f} {y0}V{y1}"/>'
                               + (text(self.x(t), y1 + 14, f"{t:.5g}", "q s m") if below else ""))
-        self.parts.append(f'<text x="{x0}" y="{y0 - 7}" class="b">{html.escape(title)} <tspan class="q s">{unit}</tspan></text>')
+        self.parts.append(f'<text x="{x0}" y="{y0 - 7}" class="b">{html.escape(title)} <tspan class="q '
+                          f's">{unit}</tspan></text>')
         if below:
             self.parts.append(text((x0 + x1) / 2, y1 + 30, below, "q m"))
         return self
@@ -123,11 +130,13 @@ class Axes:
         """A band between two lines."""
         a, b = self.x(xs), self.y(low)
         points = [*zip(a, self.y(high)), *zip(a[::-1], b[::-1])]
-        self.parts.append(f'<path class="{cls}" opacity="{opacity}" d="M' + "L".join(f"{u:.1f} {v:.1f}" for u, v in points) + 'Z"/>')
+        self.parts.append(f'<path class="{cls}" opacity="{opacity}" d="M'
+                          + "L".join(f"{u:.1f} {v:.1f}" for u, v in points) + 'Z"/>')
 
     def dot(self, x, y, cls="f0", size=5, more="", inside=""):
         """A dot."""
-        self.parts.append(f'<circle class="{cls}" cx="{float(self.x(x)):.1f}" cy="{float(self.y(y)):.1f}" r="{size}" {more}>'
+        self.parts.append(f'<circle class="{cls}" cx="{float(self.x(x)):.1f}" cy="{float(self.y(y)):.1f}" r="{size}" '
+                          f'{more}>'
                           f"{inside}</circle>")
 
     def names(self, xs, ys, words, cls="s"):
@@ -161,7 +170,8 @@ def log(result, scenario, soc_initial=1.0, size=SIZE, ghosts=()):
     for axes in (power, charge, distance):
         for a, b in zip(days[dark[::2]], days[dark[1::2]]):
             x0, x1 = float(axes.x(a)), float(axes.x(b))
-            axes.parts.append(f'<rect class="f3" opacity=".09" x="{x0:.1f}" y="{axes.box[1]:.1f}" width="{x1 - x0:.1f}" '
+            axes.parts.append(f'<rect class="f3" opacity=".09" x="{x0:.1f}" y="{axes.box[1]:.1f}" '
+                              f'width="{x1 - x0:.1f}" '
                               f'height="{axes.box[3] - axes.box[1]:.1f}"/>')
             if axes is power and x1 - x0 > 40:
                 axes.parts.append(text((x0 + x1) / 2, axes.box[1] + 12, "night", "q s m"))
@@ -170,12 +180,15 @@ def log(result, scenario, soc_initial=1.0, size=SIZE, ghosts=()):
     power.line(days, start(log.solar_w, log.solar_w[0]), "c1")
     power.line(days, start(log.load_w, log.load_w[0]), "c3")
     peak = int(log.solar_w.argmax())
-    power.parts.append(text(min(max(power.x(days[peak]), 80), width - 110), power.y(log.solar_w[peak]) - 5, "sunlight", "s m f1 b"))
+    power.parts.append(text(min(max(power.x(days[peak]), 80), width - 110), power.y(log.solar_w[peak]) - 5, "sunlight",
+                            "s m f1 b"))
     power.parts.append(text(width - 57, power.y(log.load_w[-1]) + 4, "load", "s b"))
     charge.frame("Charge", "%", count=2)
     for name, cls, other in ghosts:
-        charge.line(start(other.time_h / 24, 0), 100 * start(other.soc, soc_initial), cls, "stroke-width:1.2;stroke-dasharray:3 3")
-        distance.line(start(other.time_h / 24, 0), start(other.distance_km, 0), cls, "stroke-width:1.2;stroke-dasharray:3 3")
+        charge.line(start(other.time_h / 24, 0), 100 * start(other.soc, soc_initial), cls,
+                    "stroke-width:1.2;stroke-dasharray:3 3")
+        distance.line(start(other.time_h / 24, 0), start(other.distance_km, 0), cls,
+                      "stroke-width:1.2;stroke-dasharray:3 3")
         distance.parts.append(text(width - 57, distance.y(other.distance_km[-1]) + 4, name, "s b f" + cls[1]))
     charge.line(days, 100 * start(log.soc, soc_initial), "c0")
     distance.frame("Distance", "km", "Earth days after sunrise", count=3)
@@ -186,7 +199,8 @@ def log(result, scenario, soc_initial=1.0, size=SIZE, ghosts=()):
     distance.dot(days[-1], far, "f2", 4)
     distance.parts.append(text(width - 55, distance.y(far) - 7, f"{far:.3g} km", "b"))
     return svg(width, height, f"{power}{charge}{distance}",
-               f"Three charts over {days[-1]:.0f} Earth days. Sunlight reaches {log.solar_w.max():.0f} W against a load of up "
+               f"Three charts over {days[-1]:.0f} Earth days. Sunlight reaches {log.solar_w.max():.0f} W against a "
+               "load of up "
                f"to {log.load_w.max():.0f} W. Charge falls to {100 * result.minimum_soc:.0f} % and ends at "
                f"{100 * result.final_soc:.0f} %. Distance reaches {result.range_km:.2f} km.")
 
@@ -198,20 +212,25 @@ def mass(result, size=SIZE, spans=None, ghosts=()):
     items = {name: float(value) for name, value in result.mass.items.items() if value > 0.0005}
     items = dict(sorted(items.items(), key=lambda item: -item[1]))
     others = [getattr(other.mass, name) for name in items for *_, other in ghosts]
-    axes = Axes((100, 24, width - 56, height - 34), span([*items.values(), *others], zero=True), (0, 1)).frame(below="mass (kg)")
-    axes.parts = [part for part in axes.parts if " e\"" not in part and "H" not in part]         # rows have names instead
+    axes = Axes((100, 24, width - 56, height - 34), span([*items.values(), *others], zero=True),
+                (0, 1)).frame(below="mass (kg)")
+    axes.parts = [part for part in axes.parts if " e\"" not in part
+                  and "H" not in part]         # rows have names instead
     row = (axes.box[3] - axes.box[1]) / len(items)
     for k, (name, value) in enumerate(items.items()):
         y, end = axes.box[1] + (k + 0.5) * row, float(axes.x(value))
-        axes.parts.append(f'<rect class="f0" opacity=".8" x="100" y="{y - 0.34 * row:.1f}" width="{max(end - 100, 1):.1f}" '
+        axes.parts.append(f'<rect class="f0" opacity=".8" x="100" y="{y - 0.34 * row:.1f}" '
+                          f'width="{max(end - 100, 1):.1f}" '
                           f'height="{0.68 * row:.1f}"/>' + text(end + 6, y + 4, f"{value:.2f}", "s")
                           + text(93, y + 4, words.get(name, name[:-3].replace("_", " ")), "s e"))
         for _, cls, other in ghosts:
-            axes.parts.append(f'<path class="l {cls}" d="M{axes.x(getattr(other.mass, name)):.1f} {y - 0.42 * row:.1f}v{0.84 * row:.1f}"/>')
+            axes.parts.append(f'<path class="l {cls}" d="M{axes.x(getattr(other.mass, name)):.1f} '
+                              f'{y - 0.42 * row:.1f}v{0.84 * row:.1f}"/>')
     sure = "" if spans is None else f", 90 % of draws {spans[0]:.1f} to {spans[1]:.1f}"
     axes.parts.append(text(8, 14, f"{result.total_mass_kg:.2f} kg in all{sure}", "b"))
     heaviest = next(iter(items))
-    return svg(width, height, str(axes), f"Bars of mass line items: {result.total_mass_kg:.2f} kg in all{sure}; the largest is "
+    return svg(width, height, str(axes), f"Bars of mass line items: {result.total_mass_kg:.2f} kg in all{sure}; the "
+               "largest is "
                f"{heaviest[:-3].replace('_', ' ')} with {items[heaviest]:.2f} kg.")
 
 
@@ -220,11 +239,13 @@ def wheel(result, design, scenario, model, size=SIZE):
     width, height = size
     narrow = width < 460                                 # then one above the other
     part = width if narrow else round(0.45 * width)
-    drawn = wheel_picture(design, result, scenario, model=model, width=part, height=round(0.52 * height) if narrow else height - 20)
+    drawn = wheel_picture(design, result, scenario, model=model, width=part, height=round(0.52 * height) if narrow
+                          else height - 20)
     if result.buried:
         return svg(width, height, drawn, alt(drawn))
     _, angle, normal, shear = contact(design, result, scenario, model, 61)
-    axes = Axes((44, round(0.52 * height) + 26, width - 14, height - 44) if narrow else (part + 44, 24, width - 14, height - 44),
+    axes = Axes((44, round(0.52 * height) + 26, width - 14, height - 44) if narrow
+                else (part + 44, 24, width - 14, height - 44),
                 (0, float(np.degrees(angle[-1])) * 1.02), span(normal, shear, zero=True))
     axes.frame("Stress", "kPa", "angle ahead of the lowest point (°)")
     for values, cls, name, dash in ((normal, "c0", "normal", ""), (shear, "c1", "shear", "stroke-dasharray:7 3")):
@@ -243,7 +264,8 @@ def fleet(result, rovers, size=SIZE, spans=None, ghosts=()):
         order.setdefault((m, r), []).append(n)           # rovers at one place share a name
     around = [] if spans is None else spans[0]
     tops = [ranges, result.range_km, [] if spans is None else spans[1], [g.range_km for *_, g in ghosts]]
-    low, high = (f([*masses, *around, result.total_mass_kg, *(g.total_mass_kg for *_, g in ghosts)]) for f in (min, max))
+    low, high = (f([*masses, *around, result.total_mass_kg, *(g.total_mass_kg for *_, g in ghosts)])
+                 for f in (min, max))
     axes = Axes((50, 26, width - 14, height - 44), (0.8 * low, 1.3 * high), span(*tops, zero=True, room=0.1), log=True)
     axes.frame("Range", "km", "mass (kg), logarithmic")
     places = np.array(list(order))
@@ -252,14 +274,17 @@ def fleet(result, rovers, size=SIZE, spans=None, ghosts=()):
     axes.names(places[:, 0], places[:, 1], [", ".join(found) for found in order.values()])
     if spans is not None:
         (x0, x1), (y0, y1) = spans
-        axes.parts.append(f'<path class="l c0" style="stroke-width:1.3" d="M{axes.x(x0):.1f} {axes.y(result.range_km):.1f}H'
+        axes.parts.append(f'<path class="l c0" style="stroke-width:1.3" d="M{axes.x(x0):.1f} '
+                          f'{axes.y(result.range_km):.1f}H'
                           f'{axes.x(x1):.1f}M{axes.x(result.total_mass_kg):.1f} {axes.y(y0):.1f}V{axes.y(y1):.1f}"/>')
     for name, cls, other in ghosts:
         axes.dot(other.total_mass_kg, other.range_km, f"n l {cls}", 6)
         axes.names(np.array([other.total_mass_kg]), np.array([other.range_km]), [name], "s b f" + cls[1])
     axes.dot(result.total_mass_kg, result.range_km, "f0", 6)
-    axes.parts.append(f'<circle class="f0" cx="{width - 208}" cy="10" r="5"/>' + text(width - 198, 14, "this design", "s")
-                      + f'<rect class="f1" x="{width - 122}" y="6" width="8" height="8"/>' + text(width - 109, 14, "published rovers", "s"))
+    axes.parts.append(f'<circle class="f0" cx="{width - 208}" cy="10" r="5"/>'
+                      + text(width - 198, 14, "this design", "s")
+                      + f'<rect class="f1" x="{width - 122}" y="6" width="8" height="8"/>'
+                      + text(width - 109, 14, "published rovers", "s"))
     others = ", ".join(f"{n} {r:.1f} km" for n, r in zip(names, ranges))
     return svg(width, height, str(axes), f"Range against mass: this design reaches {result.range_km:.2f} km with "
                f"{result.total_mass_kg:.1f} kg; on the same mission {others}.")
@@ -270,7 +295,8 @@ def why(metric, names, values, before, after, baseline, size=SIZE):
     width, height = size
     values = np.asarray(values, float)
     words, unit = label(metric)
-    least = max(1e-3 * np.abs(values).max(initial=0), 1e-9 * max(abs(before), abs(after)), 1e-12)        # below: rounding
+    least = max(1e-3 * np.abs(values).max(initial=0), 1e-9 * max(abs(before), abs(after)),
+                1e-12)        # below: rounding
     order = [i for i in np.argsort(-np.abs(values)) if abs(values[i]) > least]
     shown = order[:9]
     rest = values.sum() - values[shown].sum()
@@ -284,23 +310,29 @@ def why(metric, names, values, before, after, baseline, size=SIZE):
     tall = (axes.box[3] - axes.box[1]) / max(len(rows), 4)
     for k, (name, step) in enumerate(rows):
         y, (a, b) = axes.box[1] + k * tall, sorted((float(axes.x(edges[k])), float(axes.x(edges[k + 1]))))
-        axes.parts.append(f'<rect class="{"f0" if step > 0 else "f1"}" opacity=".85" x="{a:.1f}" y="{y + 0.16 * tall:.1f}" '
-                          f'width="{max(b - a, 1):.1f}" height="{0.68 * tall:.1f}"/>' + text(114, y + tall / 2 + 4, name, "s e")
+        axes.parts.append(f'<rect class="{"f0" if step > 0 else "f1"}" opacity=".85" x="{a:.1f}" '
+                          f'y="{y + 0.16 * tall:.1f}" '
+                          f'width="{max(b - a, 1):.1f}" height="{0.68 * tall:.1f}"/>'
+                          + text(114, y + tall / 2 + 4, name, "s e")
                           + text(b + 5, y + tall / 2 + 4, f"{step:+.3g}", "s"))
     for value, dash in ((before, "2 3"), (after, "7 4")):
-        axes.parts.append(f'<path class="a" stroke-dasharray="{dash}" d="M{axes.x(value):.1f} {axes.box[1]}V{axes.box[3]}"/>')
+        axes.parts.append(f'<path class="a" stroke-dasharray="{dash}" d="M{axes.x(value):.1f} '
+                          f'{axes.box[1]}V{axes.box[3]}"/>')
     said = f"{words}: {baseline} (dotted) {before:.4g} to this design (dashed) {after:.4g} {unit}"
-    axes.parts.append(text(8, 14, said if 7 * len(said) < width else f"{words}: from {before:.4g} to {after:.4g} {unit}", "b")
+    axes.parts.append(text(8, 14, said if 7 * len(said) < width else f"{words}: from {before:.4g} to {after:.4g} "
+                           f"{unit}", "b")
                       + text(8, 30, "▮ more", "s f0") + text(66, 30, "▮ less, to the left", "s f1"))
     steps = "; ".join(f"{name} {step:+.3g}" for name, step in rows)
-    return svg(width, height, str(axes), f"Steps from {before:.4g} ({baseline}) to {after:.4g} in {named(metric)}: {steps}.")
+    return svg(width, height, str(axes), f"Steps from {before:.4g} ({baseline}) to {after:.4g} in {named(metric)}: "
+               f"{steps}.")
 
 
 def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, size=SIZE, log=False):
     """One metric along one variable, with its interval (where, low, high), this design, and the published rovers."""
     width, height = size
     words, unit = label(metric)
-    axes = Axes((56, 26, width - 14, height - 44), (float(values[0]), float(values[-1])), span(nominal, *band[1:], here[1]), log)
+    axes = Axes((56, 26, width - 14, height - 44), (float(values[0]), float(values[-1])),
+                span(nominal, *band[1:], here[1]), log)
     if not np.isfinite(nominal).any():
         said = f"{words} has no value at any {x_label}: the wheel is buried"
         return svg(width, height, text(width / 2, height / 2, said, "m"), said)
@@ -315,13 +347,16 @@ def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, si
         inside = (rovers[0] >= values[0]) & (rovers[0] <= values[-1]) & np.isfinite(rovers[1])
         xs, ys = rovers[0][inside], np.clip(rovers[1][inside], *axes.ys)
         for x, y in zip(xs, ys):
-            axes.parts.append(f'<rect class="f1" x="{axes.x(x) - 3.5:.1f}" y="{axes.y(y) - 3.5:.1f}" width="7" height="7"/>')
+            axes.parts.append(f'<rect class="f1" x="{axes.x(x) - 3.5:.1f}" y="{axes.y(y) - 3.5:.1f}" width="7" '
+                              'height="7"/>')
         axes.names(xs, ys, np.asarray(rovers[2])[inside])
     if np.isfinite(here[1]):
         axes.dot(*here, "f3", 6)
     axes.parts.append(text(width - 14, 14, "● this design" + "   band: 90 % of draws" * (width > 460), "s q e"))
-    return svg(width, height, str(axes), f"{named(metric)} against {x_label}: from {nominal[0]:.3g} at {values[0]:.3g} to "
-               f"{nominal[-1]:.3g} at {values[-1]:.3g}; this design has {here[1]:.3g} at {here[0]:.3g}.".replace("nan", "no value"))
+    return svg(width, height, str(axes), f"{named(metric)} against {x_label}: from {nominal[0]:.3g} at {values[0]:.3g} "
+               "to "
+               f"{nominal[-1]:.3g} at {values[-1]:.3g}; this design has {here[1]:.3g} at {here[0]:.3g}."
+               .replace("nan", "no value"))
 
 
 def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
@@ -338,10 +373,12 @@ def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
 
     for k, (a, b) in enumerate(zip(edges, edges[1:])):
         polygons, offsets = field.filled(a, b)
-        outlines = "".join(path(points[i:j], "Z") for points, starts in zip(polygons, offsets) for i, j in zip(starts, starts[1:]))
+        outlines = "".join(path(points[i:j], "Z") for points, starts in zip(polygons, offsets) for i,
+                           j in zip(starts, starts[1:]))
         axes.parts.append(f'<path fill="{shade((k + 0.5) / 10)}" fill-rule="evenodd" d="{outlines}"/>')
         y = height - 44 - (height - 90) * k / 10
-        axes.parts.append(f'<rect fill="{shade((k + 0.5) / 10)}" x="{width - 74}" y="{y - (height - 90) / 10:.1f}" width="14" '
+        axes.parts.append(f'<rect fill="{shade((k + 0.5) / 10)}" x="{width - 74}" y="{y - (height - 90) / 10:.1f}" '
+                          'width="14" '
                           f'height="{(height - 90) / 10 + 0.5:.1f}"/>' + text(width - 56, y + 4, f"{a:.3g}", "q s"))
     axes.parts.append(text(width - 56, 46 + 4, f"{high:.3g}", "q s"))
     for level in edges[2:-1:2] if np.nanmax(grid) > np.nanmin(grid) else ():
@@ -349,17 +386,23 @@ def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
             axes.parts.append(f'<path class="n" stroke="#fff" opacity=".8" d="{path(points)}"/>')
             if len(points) > 8:
                 x, y = points[len(points) // 2]
-                axes.parts.append(f'<text class="s m" style="fill:#fff;stroke:#0008;stroke-width:2.5;paint-order:stroke" '
+                axes.parts.append('<text class="s m" '
+                                  'style="fill:#fff;stroke:#0008;stroke-width:2.5;paint-order:stroke" '
                                   f'x="{axes.x(x):.1f}" y="{axes.y(y) + 4:.1f}">{level:.3g}</text>')
     if stalled.any():
         outlines = "".join(path(points[i:j], "Z") for points, starts in
-                           zip(*contour_generator(xs, ys, stalled.T.astype(float)).filled(0.5, 2)) for i, j in zip(starts, starts[1:]))
-        axes.parts.append('<pattern id="rdk-hatch" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
-                          f'<path d="M0 0V7" stroke="#fff" stroke-width="1.6"/></pattern><path fill="url(#rdk-hatch)" d="{outlines}"/>')
+                           zip(*contour_generator(xs, ys, stalled.T.astype(float)).filled(0.5, 2)) for i,
+                           j in zip(starts, starts[1:]))
+        axes.parts.append('<pattern id="rdk-hatch" width="7" height="7" patternUnits="userSpaceOnUse" '
+                          'patternTransform="rotate(45)">'
+                          '<path d="M0 0V7" stroke="#fff" stroke-width="1.6"/></pattern><path fill="url(#rdk-hatch)" '
+                          f'd="{outlines}"/>')
     axes.frame(y_label, below=x_label)
     axes.dot(*here, "", 6, 'fill="#fff" stroke="#000" stroke-width="2"')
-    axes.parts.append(text(width - 4, 14, named(metric) + (", hatched: cannot drive" if stalled.any() else ""), "s b e"))
-    return svg(width, height, str(axes), f"Map of {named(metric)} over {x_label} and {y_label}: from {np.nanmin(grid):.3g} to "
+    axes.parts.append(text(width - 4, 14, named(metric) + (", hatched: cannot drive" if stalled.any() else ""),
+                           "s b e"))
+    return svg(width, height, str(axes), f"Map of {named(metric)} over {x_label} and {y_label}: from "
+               f"{np.nanmin(grid):.3g} to "
                f"{np.nanmax(grid):.3g}; the circle marks this design.")
 
 
@@ -370,7 +413,8 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
     """
     width, height = size
     if not len(x):
-        return svg(width, height, text(14, 16, title, "b") + text(width / 2, height / 2, "no design meets the constraints", "m"),
+        return svg(width, height, text(14, 16, title, "b") + text(width / 2, height / 2,
+                                                                  "no design meets the constraints", "m"),
                    f"{title}: an empty front, no design meets the constraints.")
     faded = np.zeros(len(x), bool) if faded is None else faded
     axes = Axes((54, 42, width - 92, height - 44), span(x, here[0]), span(y, here[1]))
@@ -381,19 +425,23 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
         said = ", ".join(f"{label(n)[0]} {v[i]:.4g} {label(n)[1]}".strip() for n, v in zip(names, (x, y, colour)))
         first = i == (0 if picked is None else picked)
         axes.dot(x[i], y[i], "rdk-pick", 6, f'fill="{shade((colour[i] - low) / (high - low))}" stroke="currentColor" '
-                 f'stroke-width="{2.6 if i == picked else 0.7}" opacity="{0.25 if faded[i] else 1}" tabindex="{0 if first else -1}" '
+                 f'stroke-width="{2.6 if i == picked else 0.7}" opacity="{0.25 if faded[i] else 1}" '
+                 f'tabindex="{0 if first else -1}" '
                  f'role="button" data-do="point:{i}" aria-label="{said}"', f"<title>{said}</title>")
     for name, cls, other in ghosts:
-        axes.dot(getattr(other, names[0]), getattr(other, names[1]), f"n l {cls}", 8, inside=f"<title>{html.escape(name)}</title>")
+        axes.dot(getattr(other, names[0]), getattr(other, names[1]), f"n l {cls}", 8,
+                 inside=f"<title>{html.escape(name)}</title>")
     a, b = float(axes.x(here[0])), float(axes.y(here[1]))
     axes.parts.append(f'<path class="l c1" style="stroke-width:3" d="M{a - 6:.1f} {b - 6:.1f}l12 12m0 -12l-12 12"/>')
     axes.names(np.array([here[0]]), np.array([here[1]]), ["this design"], "s b")
     for k in range(10):
-        axes.parts.append(f'<rect fill="{shade((k + 0.5) / 10)}" x="{width - 78}" y="{height - 44 - (k + 1) * (height - 110) / 10:.1f}" '
+        axes.parts.append(f'<rect fill="{shade((k + 0.5) / 10)}" x="{width - 78}" '
+                          f'y="{height - 44 - (k + 1) * (height - 110) / 10:.1f}" '
                           f'width="12" height="{(height - 110) / 10 + 0.5:.1f}"/>')
     axes.parts.append(text(width - 60, height - 42, f"{low:.3g}", "q s") + text(width - 60, 72, f"{high:.3g}", "q s")
                       + text(width - 4, 52, label(names[2])[0], "s e") + text(8, 14, title, "b")
                       + (text(8, 28, stale, "bad") if stale else ""))
     body = f'<g opacity=".45">{axes}</g>' + text(8, 28, stale, "bad") if stale else str(axes)
     spans = ", ".join(f"{named(n)} from {min(v):.3g} to {max(v):.3g}" for n, v in zip(names, (x, y, colour)))
-    return svg(width, height, body, f"{title}. Front of {len(x)} designs: {spans}." + (f" {stale}" if stale else ""), "group")
+    return svg(width, height, body, f"{title}. Front of {len(x)} designs: {spans}." + (f" {stale}" if stale else ""),
+               "group")

@@ -197,7 +197,8 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
         f"<style>{STYLE}</style></head><body>", f"<h1>{_text(title)}</h1>",
         f"<p>{_text(_mission_words(scenario))}</p>",
         f'<p class="verdict{" missed" * bool(missed)}"><b>{_text(verdict)}</b> {_text(binds)}</p>',
-        '<div class="columns wide"><div>', rover_picture(design, result, scenario, width=250), "</div><div>", "<h2>Design</h2>", _design_table(design, bounds),
+        '<div class="columns wide"><div>', rover_picture(design, result, scenario, width=250), "</div><div>",
+        "<h2>Design</h2>", _design_table(design, bounds),
         "</div><div>", "<h2>Demands</h2>", _demand_table(demands),
         "<h2>Risks</h2>", *(f"<p>{_text(words)}</p>" for words in _risks(demands)), "</div></div>",
         *_side_by_side({"this design": design, **(candidates or {})}, scenario, draws, model),
@@ -270,7 +271,8 @@ def _on_front(front, result):
     others = sorted((name for name in front.problem.objectives if name != "total_mass_kg"), key=spread, reverse=True)
     names = ["total_mass_kg", *others, "range_km", "slope_capability_deg"][:3]
     return pictures.front(*(np.asarray(getattr(front.performance, name), float) for name in names), names,
-                          [float(getattr(result, name)) for name in names], SIZE, title=f"Front of {len(front)} designs")
+                          [float(getattr(result, name)) for name in names], SIZE,
+                          title=f"Front of {len(front)} designs")
 
 
 def _side_by_side(designs, scenario, draws, model):

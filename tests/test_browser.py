@@ -22,7 +22,7 @@ OPEN = """async path => { const app = window.jupyterapp; await app.restored;
     const panel = await app.commands.execute('docmanager:open', {path});
     await panel.context.ready; await panel.sessionContext.ready; await panel.sessionContext.shutdown() }"""
 RESTART = "async () => { await window.jupyterapp.shell.currentWidget.sessionContext.session.kernel.restart() }"
-# Moves in the page itself, where what is visible cannot change between the choice and the move; returns how many of a kind.
+# Moves in the page itself, where what is visible cannot change between choice and move; returns how many of a kind.
 WALK = """async ([moves, texts]) => {
     let seed = 5;
     const random = count => { seed = seed * 48271 % 2147483647; return seed % count };
@@ -33,7 +33,8 @@ WALK = """async ([moves, texts]) => {
     for (let i = 0; i < moves; i++) {
         const kind = random(100);
         if (kind < 25) {
-            const all = visible('[role=tab], [data-do=undo], [data-do=redo], [data-do=pin], [data-do^=unpin], [data-do^=use], [data-do^=lever], [data-name]');
+            const all = visible('[role=tab], [data-do=undo], [data-do=redo], [data-do=pin], [data-do^=unpin],'
+                                + '[data-do^=use], [data-do^=lever], [data-name]');
             all[random(all.length)].click(); done.buttons++;
         } else if (kind < 40) {
             const all = visible('select'), menu = all[random(all.length)];
@@ -141,10 +142,12 @@ def assert_sound(explorer):
     """No error, no blank picture, nothing wider than the page, no text cut off by its picture."""
     assert "Error" not in explorer.inner_text() and "nan" not in explorer.locator(".rdk-verdict").inner_text()
     found = explorer.evaluate("""e => ({
-        texts: [...e.querySelectorAll('.rdk-picture svg[aria-label], .rdk-side svg[aria-label]')].map(s => s.querySelectorAll('text').length),
-        cut: [...e.querySelectorAll('.rdk-picture svg[aria-label] > text, .rdk-picture svg[aria-label] > g > text')].filter(t => {
+        texts: [...e.querySelectorAll(':is(.rdk-picture, .rdk-side) svg[aria-label]')].map(
+            s => s.querySelectorAll('text').length),
+        cut: [...e.querySelectorAll('.rdk-picture svg[aria-label] > :is(text, g > text)')].filter(t => {
             const a = t.getBoundingClientRect(), b = t.ownerSVGElement.getBoundingClientRect();
-            return a.width && (a.left < b.left - 2 || a.right > b.right + 2 || a.top < b.top - 2 || a.bottom > b.bottom + 2) }).map(t => t.textContent),
+            return a.width && (a.left < b.left - 2 || a.right > b.right + 2 || a.top < b.top - 2
+                               || a.bottom > b.bottom + 2) }).map(t => t.textContent),
         wide: document.documentElement.scrollWidth - innerWidth})""")
     assert all(count > 1 for count in found["texts"]) and found["texts"], found
     assert not found["cut"] and found["wide"] <= 0, found
@@ -178,7 +181,8 @@ def test_every_view_is_whole_and_accessible_at_three_sizes_and_in_dark(explorer)
 
 def test_the_answer_is_in_sight(explorer):
     page = explorer.page
-    for width, height, parts in ((1280, 800, ".rdk-say1, .rdk-card, .rdk-picture svg[aria-label], .rdk-side svg[aria-label], .rdk-tray, .rdk-left .rdk-row >> nth=0"),
+    for width, height, parts in ((1280, 800, ".rdk-say1, .rdk-card, .rdk-picture svg[aria-label], .rdk-side "
+                                  "svg[aria-label], .rdk-tray, .rdk-left .rdk-row >> nth=0"),
                                  (390, 844, ".rdk-say1, .rdk-card >> nth=0")):
         page.set_viewport_size({"width": width, "height": height})
         page.wait_for_timeout(450)
@@ -202,7 +206,8 @@ def test_by_keyboard_alone(explorer):
     number = box(explorer, "wheel_width_m")
     number.fill("95,5")
     number.press("Enter")
-    result = rdk.evaluate(rdk.rover("Rashid-1").replace(wheel_radius_m=0.105, wheel_width_m=0.0955), rdk.scenario("polar_prospecting"))
+    result = rdk.evaluate(rdk.rover("Rashid-1").replace(wheel_radius_m=0.105, wheel_width_m=0.0955),
+                          rdk.scenario("polar_prospecting"))
     expect(explorer.locator(".rdk-card").nth(1)).to_contain_text(f"{result.total_mass_kg:.1f}")
     number.fill("900")
     number.press("Enter")
@@ -228,7 +233,8 @@ def test_ends_of_every_slider(explorer):
     for name in (*DESIGN, *MISSION, *SOIL):
         tab(explorer, "rover" if name in DESIGN else "mission")
         slider = explorer.locator(f'[type=range][data-in="{name}"]')
-        for key, end in ("Home", NUMBERS[name].low), ("End", float("inf") if NUMBERS[name].endless else NUMBERS[name].high):
+        for key, end in ("Home", NUMBERS[name].low), ("End", float("inf") if NUMBERS[name].endless
+                                                      else NUMBERS[name].high):
             slider.press(key)
             expect(box(explorer, name)).to_have_value(NUMBERS[name].words(end))
     settled(explorer)
@@ -248,11 +254,13 @@ def test_search_and_pick_by_pointer_and_by_keyboard(explorer):
     box(explorer, "generations").fill("6")
     box(explorer, "generations").press("Enter")
     explorer.locator(".rdk-views").get_by_role("button", name="Run search").press("Enter")
-    expect(explorer.locator('[data-text="status"]')).to_contain_text(re.compile(r"done: \d+ designs after 6 generations"))
+    expect(explorer.locator('[data-text="status"]')).to_contain_text(re.compile(r"done: \d+ designs after 6 "
+                                                                                r"generations"))
     settled(explorer)
     dots = explorer.locator(".rdk-pick")
     assert dots.count() > 3
-    for dot, act in (dots.last, lambda d: d.click()), (dots.first, lambda d: (d.focus(), explorer.page.keyboard.press("Enter"))):
+    for dot, act in (dots.last, lambda d: d.click()), (dots.first, lambda d: (d.focus(),
+                                                                              explorer.page.keyboard.press("Enter"))):
         mass = re.search(r"mass ([\d.]+)", dot.get_attribute("aria-label"))[1]
         act(dot)
         expect(explorer.locator(".rdk-card").nth(1)).to_contain_text(f"{float(mass):.1f}")
@@ -281,7 +289,8 @@ def test_pin_compare_save_and_open(explorer, tmp_path):
     assert "Candidates" in (tmp_path / "report.html").read_text(encoding="utf-8")
     (tmp_path / "bad.json").write_text("{")
     explorer.locator('select[data-in="rover"]').select_option("Pragyan")
-    for name, words in ("bad.json", "was not loaded"), ("design.json", "design.json loaded"), ("design.json", "design.json loaded"):
+    for name, words in ("bad.json", "was not loaded"), ("design.json",
+                                                        "design.json loaded"), ("design.json", "design.json loaded"):
         with explorer.page.expect_file_chooser() as chooser:
             button(explorer, "Open").click()
         chooser.value.set_files(tmp_path / name)
@@ -312,12 +321,15 @@ def test_a_random_walk_of_300_moves(explorer):
     view(explorer, "Mission log")
     explorer.page.wait_for_timeout(500)
     state = from_text(explorer.page.evaluate("location.search"))
-    values = {name: float(box(explorer, name).evaluate("e => e.value === 'none' ? Infinity : e.value")) / NUMBERS[name].factor
+    values = {name: float(box(explorer,
+                              name).evaluate("e => e.value === 'none' ? Infinity : e.value")) / NUMBERS[name].factor
               for name in (*DESIGN, *MISSION, *SOIL)}
     wheels = int(explorer.locator('[data-name="wheel_count"][aria-pressed="true"]').get_attribute("data-value"))
     design = rdk.Design(wheel_count=wheels, **{name: values[name] for name in DESIGN})
-    mission = rdk.Scenario(name="shown", soil=rdk.Soil(**{name: values[name] for name in SOIL}), **{name: values[name] for name in MISSION})
-    coefficients = {name: state[name] for name in ("hub_no_load_speed_rad_s", "drivetrain_efficiency", "panel_efficiency", "growth_fraction")
+    mission = rdk.Scenario(name="shown", soil=rdk.Soil(**{name: values[name] for name in SOIL}),
+                           **{name: values[name] for name in MISSION})
+    coefficients = {name: state[name] for name in ("hub_no_load_speed_rad_s", "drivetrain_efficiency",
+                                                   "panel_efficiency", "growth_fraction")
                     if name in state}
     base = rdk.Model.engineering() if state.get("preset") == "engineering" else rdk.Model()
     result = rdk.evaluate(design, mission, model=base.replace(**coefficients))
@@ -332,7 +344,8 @@ def test_a_lost_connection_says_so(page, app):
     explorer = shown(page)
     settled(explorer)
     page.evaluate("""() => { const plain = WebSocket.prototype.send; WebSocket.prototype.send = () => {};
-        const wait = window.setTimeout; window.setTimeout = (f, ms, ...more) => wait(f, ms === 8000 ? 300 : ms, ...more); window.back = plain }""")
+        const wait = window.setTimeout;
+        window.setTimeout = (f, ms, ...more) => wait(f, ms === 8000 ? 300 : ms, ...more); }""")
     explorer.get_by_label("radius slider").press("ArrowRight")
     expect(explorer.locator(".rdk-gone")).to_be_visible()
     expect(explorer.locator(".rdk-gone")).to_contain_text("Reload the page")

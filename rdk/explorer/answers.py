@@ -23,6 +23,11 @@ def words(value, digits, unit=""):
     return "none" if np.isnan(value) else f"{value:.{digits}f} {unit}".rstrip().replace("-", "−")
 
 
+def judged(limit):
+    """A limit, and whether it is met."""
+    return ("✓ met: " if limit.met else "✗ missed: ") + limit.words
+
+
 def meets(performance, constraints):
     """Whether a design, or each of a population, drives and meets every demand."""
     met = np.asarray(performance.feasible)
@@ -42,12 +47,14 @@ def readings(design, scenario, result, spans, before, model, old):
     low, high = model.operating_temperature_min_c, model.operating_temperature_max_c
     rows = (  # title, field, digits, requirement, its sign, what it says
         ("Range", "range_km", 1, asked if asked > 0.1 else None if np.isinf(route) else route, ">=",
-         f"asked: {asked:g} km" if asked > 0.1 else f"route of {route:g} km" if np.isfinite(route) else "no end of the route"),
+         f"asked: {asked:g} km" if asked > 0.1 else f"route of {route:g} km" if np.isfinite(route)
+         else "no end of the route"),
         ("Mass", "total_mass_kg", 1, wanted.get(("total_mass_kg", "<=")), "<=",
          f"at most {wanted['total_mass_kg', '<=']:.3g} kg" if ("total_mass_kg", "<=") in wanted else "with payload"),
         ("Slope", "slope_capability_deg", 1, slope, ">=", f"needs {slope:g}°"),
         ("Energy", "energy_balance_pct", 0, 0.0, ">=", "needs 0 % or more"),
-        ("Night", "cold_temperature_c", 0, low, ">=", f"noon {result.hot_temperature_c:.0f} °C; allowed {low:g} to {high:g}".replace("-", "−")))
+        ("Night", "cold_temperature_c", 0, low, ">=", f"noon {result.hot_temperature_c:.0f} °C; allowed {low:g} to "
+         f"{high:g}".replace("-", "−")))
     for title, name, digits, need, sign, note in rows:
         value, unit = float(getattr(result, name)), label(name)[1]
         span = None if spans is None else (float(spans.low[name]), float(spans.high[name]))
@@ -60,23 +67,26 @@ def readings(design, scenario, result, spans, before, model, old):
         plain = need is None or name == "range_km" and asked <= 0.1 and result.range_km > 0
         status = "none" if plain else "risk" if risky else "met" if met else "missed"
         if span is not None and name != "cold_temperature_c":
-            note = f"{words(span[0], digits)} – {words(span[1], digits)} (90 %); {note}"
+            low_end, high_end = ("|" * bool(clamp) for clamp in spans.clamped[name])         # the end is a limit
+            note = f"{low_end}{words(span[0], digits)} – {words(span[1], digits)}{high_end} (90 %); {note}"
         if name == "slope_capability_deg" and spans is not None and 0 < spans.low["stalled"] < 1:
             note = f"{note}; {100 * spans.low['stalled']:.0f} % of draws stall"
         change = None if before is None else value - float(getattr(before, name))
-        moved = "" if change is None or not np.isfinite(change) or abs(change) < 0.5 * 10.0**-digits else f"{change:+.{digits}f}"
-        cards.append(card(title, words(value, digits), unit, status, note, moved.replace("-", "−"), value, span, need, old))
+        still = change is None or not np.isfinite(change) or abs(change) < 0.5 * 10.0**-digits
+        moved = "" if still else f"{change:+.{digits}f}"
+        cards.append(card(title, words(value, digits), unit, status, note, moved.replace("-", "−"), value, span, need,
+                          old))
     table = []
     for name, digits in ROWS:
         value, unit = float(getattr(result, name)), label(name)[1]
-        span = "" if spans is None else words(float(spans.low[name]), digits) + " to " + words(float(spans.high[name]), digits)
+        span = "" if spans is None else f"{words(spans.low[name], digits)} to {words(spans.high[name], digits)}"
         limit = needed.get(name)
-        table.append((label(name)[0], words(value, digits, unit), span, "" if limit is None else ("✓ met: " if limit.met else "✗ missed: ") + limit.words))
+        table.append((label(name)[0], words(value, digits, unit), span, "" if limit is None else judged(limit)))
     for name, title in (("stalled", "drives the slope"), ("thermal_survival", "survives heat and cold")):
         share = np.nan if spans is None else float(spans.low[name])
-        share, holds = (1 - share, not (result.stalled or result.buried)) if name == "stalled" else (share, result.thermal_survival)
+        share, holds = (1 - share, not result.stalled) if name == "stalled" else (share, result.thermal_survival)
         table.append((title, "yes" if holds else "no", f"in {100 * share:.0f} % of draws" if share == share else "",
-                      ("✓ met: " if needed[name].met else "✗ missed: ") + needed[name].words))
+                      judged(needed[name])))
     return f'<div class="rdk-cards">{"".join(cards)}</div>', table
 
 
@@ -91,7 +101,7 @@ def answer(design, scenario, result, binding, spans, before, model, old=False):
         asked = [limit for metric, _, limit in scenario.problem.constraints if (metric, limit) != ("range_km", 0.1)]
         odds = f"{'Meets all demands' if asked else 'Drives'} in {share:.0f} % of {DRAWS:,} draws."
     said = explain.levers(design, scenario, result, binding.key, model)
-    buttons = [(f"lever:{name}", f"{words} +10 %: {gain:+.2g} {unit}".replace("-", "−")) for name, words, gain, unit in said[:3]]
+    buttons = [(f"lever:{lever[0]}", "{1} +10 %: {2:+.2g} {3}".format(*lever).replace("-", "−")) for lever in said[:3]]
     head = binding.sentence
     if buttons:
         head = binding.sentence.split(":")[0] + ". Try" if binding.key not in ("soil", "traction") else "Try"
@@ -133,9 +143,11 @@ def swept(design, scenario, model, fields, metric, size):
     rovers = None
     if name in DESIGN_SPACE:                             # a mission's field is not the rovers' own
         names, fleet = published()
-        rovers = (getattr(fleet, name) * factors[0], np.asarray(getattr(evaluate(fleet, scenario, model=model), metric), float), names)
+        others = evaluate(fleet, scenario, model=model)
+        rovers = getattr(fleet, name) * factors[0], np.asarray(getattr(others, metric), float), names
     own = float(getattr(evaluate(design, scenario, model=model), metric))
-    return pictures.curve(axes[0], metric, values * factors[0], np.asarray(getattr(line, metric), float), line.stalled | line.buried,
+    return pictures.curve(axes[0], metric, values * factors[0], np.asarray(getattr(line, metric), float),
+                          line.stalled | line.buried,
                           (knots * factors[0], *band), (here[0], own), rovers, size, log=not f[0].step)
 
 
@@ -143,7 +155,8 @@ def explained(design, reference, name, scenario, model, metric, size):
     """The picture of what each variable contributes to the difference from a reference."""
     found = attribution(design, reference, scenario, model=model)
     if metric not in found.contributions:
-        said = (f"{label(metric)[0]} has no value in some mixture of the two designs (a buried wheel), so that its difference "
+        said = (f"{label(metric)[0]} has no value in some mixture of the two designs (a buried wheel), so that its "
+                "difference "
                 "cannot be shared out. Choose another metric.")
         return pictures.svg(*size, pictures.text(14, 40, said[:90]) + pictures.text(14, 58, said[90:]), said)
     names = [label(n)[0] if n in NUMBERS else "wheels" for n in DESIGN_SPACE]
@@ -164,7 +177,8 @@ def solved(design, scenario, model, name):
     if met.any():
         best = values[met][np.abs(np.log((values[met] + 1e-3) / (getattr(design, name) + 1e-3))).argmin()]
         return float(best), f"{f.label} of {f.words(float(f'{best:.4g}'))} {f.unit} meets the demands"
-    apart = [f"{label(metric)[0]} {'≥' if sign == '>=' else '≤'} {limit:g}" for metric, sign, limit in scenario.problem.constraints
+    apart = [f"{label(metric)[0]} {'≥' if sign == '>=' else '≤'} {limit:g}" for metric, sign,
+             limit in scenario.problem.constraints
              if not meets(found, [(metric, sign, limit)]).any()]
     return None, (f"no {f.label} from {f.words(f.low)} to {f.words(f.high)} {f.unit} meets the demands" +
                   (": " + ", ".join(apart) if apart else ""))

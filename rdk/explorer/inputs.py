@@ -1,4 +1,4 @@
-"""The explorer's inputs: one table of fields with sliders, what people type into them, and the state as a short text."""
+"""The explorer's inputs: one table of fields with sliders, what people type into them, the state as a short text."""
 from __future__ import annotations
 
 import difflib
@@ -94,12 +94,15 @@ def _own(name, label, unit, step, words, factor=1.0):
 
 
 DESIGN = {
-    "wheel_radius_m": _own("wheel_radius_m", "radius", "mm", 1, "Half the wheel's height. A larger wheel sinks less, climbs "
+    "wheel_radius_m": _own("wheel_radius_m", "radius", "mm", 1, "Half the wheel's height. A larger wheel sinks less, "
+                           "climbs "
                            "more, turns faster over ground and weighs more.", 1000),
     "wheel_width_m": _own("wheel_width_m", "width", "mm", 1, "A wider wheel sinks less and weighs more.", 1000),
-    "grouser_height_m": _own("grouser_height_m", "grouser height", "mm", 0.5, "Ribs across the wheel that grip soil.", 1000),
+    "grouser_height_m": _own("grouser_height_m", "grouser height", "mm", 0.5, "Ribs across the wheel that grip soil.",
+                             1000),
     "grouser_count": _own("grouser_count", "grousers", "", 1, "Ribs on each wheel."),
-    "chassis_mass_kg": _own("chassis_mass_kg", "chassis", "kg", 0, "Mass of the structure. A heavier one loses less heat "
+    "chassis_mass_kg": _own("chassis_mass_kg", "chassis", "kg", 0, "Mass of the structure. A heavier one loses less "
+                            "heat "
                             "for its size."),
     "wheelbase_m": _own("wheelbase_m", "wheelbase", "m", 0.01, "From the first axle to the last."),
     "solar_area_m2": _own("solar_area_m2", "solar array", "m²", 0, "Area of the cells."),
@@ -107,19 +110,25 @@ DESIGN = {
     "avionics_power_w": _own("avionics_power_w", "avionics", "W", 0.5, "Computer, radio and sensors, at all hours."),
     "peak_wheel_torque_nm": _own("peak_wheel_torque_nm", "hub torque", "N m", 0, "The most that each hub can give.")}
 COEFFICIENTS = {
-    "hub_no_load_speed_rad_s": Field("hub speed", "rad/s", 0.5, 50, 0, "Fastest turn of a hub without load; it caps the "
+    "hub_no_load_speed_rad_s": Field("hub speed", "rad/s", 0.5, 50, 0, "Fastest turn of a hub without load; it caps "
+                                     "the "
                                      "cruise speed. The original release has 5.", endless=True),
     "drivetrain_efficiency": Field("drive efficiency", "%", 0.3, 1, 1, "From electrical power to power at the wheel. "
                                    "The paper has 80 %.", 100),
-    "panel_efficiency": Field("cell efficiency", "%", 0.1, 0.4, 0.5, "Of sunlight into power. The paper has 28 %.", 100),
+    "panel_efficiency": Field("cell efficiency", "%", 0.1, 0.4, 0.5, "Of sunlight into power. The paper has 28 %.",
+                              100),
     "growth_fraction": Field("mass margin", "%", 0, 0.5, 1, "Allowance on the dry mass for what is not yet known. The "
                              "paper has 20 %.", 100)}
 MISSION = {
-    "latitude_deg": Field("latitude", "°", -90, 90, 0.5, "South negative. The sun of the model stands over the equator."),
-    "duration_earth_days": Field("duration", "days", 0.5, 60, 0.5, "Earth days from sunrise. A lunar day has 14.8 of light."),
+    "latitude_deg": Field("latitude", "°", -90, 90, 0.5, "South negative. The sun of the model stands over the "
+                          "equator."),
+    "duration_earth_days": Field("duration", "days", 0.5, 60, 0.5, "Earth days from sunrise. A lunar day has 14.8 of "
+                                 "light."),
     "slope_deg": Field("slope", "°", 0, 35, 0.5, "Climbed all the way. Maria have 0 to 10, crater rims 15 to 25."),
-    "duty_cycle": Field("driving time", "%", 0, 1, 0.5, "Share of the time spent driving. Flown rovers have under 2 %.", 100),
-    "traverse_limit_km": Field("route", "km", 0, 200, 1, "Length of the route: the rover stops there. Type “none” for no "
+    "duty_cycle": Field("driving time", "%", 0, 1, 0.5, "Share of the time spent driving. Flown rovers have under 2 %.",
+                        100),
+    "traverse_limit_km": Field("route", "km", 0, 200, 1, "Length of the route: the rover stops there. Type “none” for "
+                               "no "
                                "limit.", endless=True),
     "payload_mass_kg": Field("payload", "kg", 0, 30, 0.1, "Instruments, beside the rover's own parts."),
     "payload_power_w": Field("payload power", "W", 0, 40, 0.5, "Drawn at all hours."),
@@ -130,25 +139,32 @@ MISSION = {
 MISSION = {name: field for name, field in MISSION.items() if name in {f.name for f in fields(Scenario)}}
 SOIL = {
     "sinkage_exponent": Field("exponent n", "", 0.5, 1.6, 0.01, "Bekker's law: how fast pressure grows with depth."),
-    "cohesive_modulus_kn_m_n1": Field("modulus k_c", "kN/mⁿ⁺¹", -60, 60, 0.1, "Stiffness that counts for narrow wheels."),
-    "frictional_modulus_kn_m_n2": Field("modulus k_φ", "kN/mⁿ⁺²", 1, 10000, 0, "Stiffness of the soil. Lunar: 400 to 1200."),
+    "cohesive_modulus_kn_m_n1": Field("modulus k_c", "kN/mⁿ⁺¹", -60, 60, 0.1, "Stiffness that counts for narrow "
+                                      "wheels."),
+    "frictional_modulus_kn_m_n2": Field("modulus k_φ", "kN/mⁿ⁺²", 1, 10000, 0, "Stiffness of the soil. Lunar: 400 to "
+                                        "1200."),
     "cohesion_kpa": Field("cohesion", "kPa", 0, 5, 0.01, "Strength without load. Lunar: 0.1 to 1."),
     "friction_angle_deg": Field("friction angle", "°", 10, 60, 0.5, "Strength that grows with load. Lunar: 30 to 50."),
-    "shear_modulus_mm": Field("shear modulus K", "mm", 1, 50, 0.5, "Slip distance that brings out the strength. 10 to 20.")}
+    "shear_modulus_mm": Field("shear modulus K", "mm", 1, 50, 0.5, "Slip distance that brings out the strength. 10 to "
+                              "20.")}
 DEMANDS = {
     "minimum_range_km": ("range_km", ">=", Field("range at least", "km", 0, 200, 0.1, "0 asks for nothing.")),
-    "minimum_slope_deg": ("slope_capability_deg", ">=", Field("climb at least", "°", 0, 35, 0.5, "Slope capability; 0 asks "
+    "minimum_slope_deg": ("slope_capability_deg", ">=", Field("climb at least", "°", 0, 35, 0.5,
+                                                              "Slope capability; 0 asks "
                                                               "for nothing.")),
-    "maximum_mass_kg": ("total_mass_kg", "<=", Field("mass at most", "kg", 1, 200, 0, "With payload. Type “none” for no "
+    "maximum_mass_kg": ("total_mass_kg", "<=", Field("mass at most", "kg", 1, 200, 0,
+                                                     "With payload. Type “none” for no "
                                                      "limit.", endless=True)),
-    "minimum_charge": ("minimum_soc", ">=", Field("charge at least", "%", 0, 1, 1, "Lowest charge of the pack; it is never "
+    "minimum_charge": ("minimum_soc", ">=", Field("charge at least", "%", 0, 1, 1,
+                                                  "Lowest charge of the pack; it is never "
                                                   "drawn below its floor, 15 % in the paper.", 100)),
     "survive": ("thermal_survival", ">=", None)}
 GOALS = {"range_goal": "range_km", "mass_goal": "total_mass_kg", "slope_goal": "slope_capability_deg"}
 SEARCH = {"population": Field("population", "", 4, 400, 1, "Designs in each generation of a search."),
           "generations": Field("generations", "", 1, 1000, 1, "The paper has 60."),
           "seed": Field("seed", "", 0, 1e6, 1, "The same seed gives the same front.")}
-NUMBERS = DESIGN | COEFFICIENTS | MISSION | SOIL | {name: field for name, (*_, field) in DEMANDS.items() if field} | SEARCH
+NUMBERS = DESIGN | COEFFICIENTS | MISSION | SOIL | {name: field for name, (*_, field) in DEMANDS.items()
+                                                    if field} | SEARCH
 """Every number of the explorer by its name."""
 METRICS = ("range_km", "total_mass_kg", "slope_capability_deg", "energy_balance_pct", "cruise_speed_m_s", "slip",
            "sinkage_m", "wheel_torque_nm", "minimum_soc", "average_solar_power_w", "cold_temperature_c",
@@ -163,7 +179,8 @@ RESTORED = (*DESIGN, "wheel_count", *COEFFICIENTS, "preset", *MISSION, *SOIL, *D
 
 def title(name):
     """A mission's name in human words."""
-    return name if name == OWN else name.replace("_", " ").capitalize() + f", {place(catalog.scenario(name).latitude_deg)}"
+    return name if name == OWN else name.replace("_",
+                                                 " ").capitalize() + f", {place(catalog.scenario(name).latitude_deg)}"
 
 
 def place(latitude_deg):
@@ -173,7 +190,8 @@ def place(latitude_deg):
 
 def choices():
     """The menus: name -> value -> words."""
-    swept = {name: f.label for name, f in (DESIGN | MISSION | SOIL | COEFFICIENTS).items() if name != "duration_earth_days"}
+    swept = {name: f.label for name, f in (DESIGN | MISSION | SOIL | COEFFICIENTS).items()
+             if name != "duration_earth_days"}
     metrics = {name: label(name)[0] for name in METRICS}
     goals = {goal: goal for goal in ("max", "min", "ignore")}
     plane = {name: words for name, words in metrics.items() if name != "sinkage_m"}
@@ -231,7 +249,8 @@ def from_text(text):
     found = {}
     for name, value in parse_qsl(text.strip().lstrip("?")):
         try:
-            found[name] = float(value) if name in NUMBERS else int(value) if name in ("wheel_count", "survive") else value
+            kind = float if name in NUMBERS else int if name in ("wheel_count", "survive") else str
+            found[name] = kind(value)
         except ValueError:
             raise ValueError(f"the link says {name}={value[:40]!r}, which is no number") from None
     return found

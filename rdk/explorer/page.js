@@ -1,0 +1,91 @@
+(root => {
+if (root.dataset.alive) return; root.dataset.alive = 1;
+const one = q => root.querySelector(q), all = q => [...root.querySelectorAll(q)], app = !!one('[data-app]');
+let last = 0, acked = 0, queue = [], timer, seen = '', size = '', pressed = '', tab = '';
+const send = (...event) => {
+    queue = queue.filter(e => e[0] > acked && !(e[1] === event[0] && e[2] === event[1] && event[0] !== 'do'));
+    last = Math.max(Date.now(), last + 1); queue.push([last, ...event]);
+    const box = one('.rdk-bridge input'); box.value = JSON.stringify(queue);
+    box.dispatchEvent(new Event('input', {bubbles: true})); box.dispatchEvent(new Event('change', {bubbles: true}));
+    clearTimeout(timer); timer = setTimeout(() => root.classList.add('rdk-lost'), 8000);
+};
+const pages = () => all('[data-tab]').forEach(t => { const on = t.dataset.tab === (tab || 'rover');
+    t.setAttribute('aria-selected', on); t.tabIndex = on ? 0 : -1; one(`[data-page=${t.dataset.tab}]`).hidden = !on; });
+const apply = () => {
+    const holder = one('.rdk-data [data-state]'); if (!holder || holder.dataset.state === seen) return;
+    seen = holder.dataset.state; const d = JSON.parse(seen); acked = d.ack;
+    root.classList.remove('rdk-lost'); if (acked >= last) clearTimeout(timer);
+    if (acked >= last) {
+        for (const [name, [at, words, tick, moved]] of Object.entries(d.v)) {
+            const range = one(`[type=range][data-in=${name}]`), box = one(`.rdk-box[data-in=${name}]`);
+            range.value = at; range.setAttribute('aria-valuetext', words + ' ' + range.dataset.unit); box.value = words;
+            range.previousSibling.style.setProperty('--at', tick); one(`[data-do="reset:${name}"]`).style.visibility =
+                moved ? '' : 'hidden';
+        }
+        for (const [name, value] of Object.entries(d.c)) {
+            all(`select[data-in=${name}]`).forEach(s => s.value = value);
+            all(`[data-name=${name}]`).forEach(b => b.setAttribute('aria-pressed', b.dataset.value === value));
+        }
+        all('[data-view]').forEach(t => { const on = t.dataset.view === d.c.view; t.setAttribute('aria-selected', on);
+            t.tabIndex = on ? 0 : -1; });
+        all('[data-for]').forEach(p => p.hidden = p.dataset.for !== d.c.view);
+        all('button[data-do]').forEach(b => { if (b.dataset.do in d.off) b.disabled = d.off[b.dataset.do]; });
+    }
+    for (const [key, words] of Object.entries(d.t)) all(`[data-text=${key}]`).forEach(e => e.textContent = words);
+    one('.rdk-picture').classList.toggle('rdk-waiting', d.busy || acked < last);
+    const bar = one('progress'); bar.max = d.p[1]; bar.value = d.p[0]; bar.hidden = !d.p[2];
+    if (app && d.link !== undefined) history.replaceState(null, '', location.pathname + (d.link ? '?' + d.link : ''));
+};
+const deliver = () => { const a = one('a[data-deliver]'); if (a) { a.removeAttribute('data-deliver'); a.click(); } };
+const copy = text => (navigator.clipboard ? navigator.clipboard.writeText(text) : Promise.reject()).catch(() => {
+    const box = document.createElement('textarea'); box.value = text; document.body.append(box); box.select();
+        document.execCommand('copy'); box.remove(); });
+new MutationObserver(() => { apply(); deliver();
+    if (pressed && document.activeElement === document.body) { const again = one(`[data-do="${pressed}"]`);
+        if (again) again.focus(); }
+}).observe(root, {subtree: true, childList: true});
+root.addEventListener('input', e => { const i = e.target; if (i.type === 'range') send('slide', i.dataset.in,
+    +i.value); });
+root.addEventListener('change', e => { const i = e.target;
+    if (i.type === 'file') { const file = i.files[0]; if (file) file.text().then(text => {
+        send('do', 'load', file.name, text); i.value = ''; }); }
+    else if (i.matches('.rdk-box')) send('type', i.dataset.in, i.value);
+    else if (i.matches('select')) { send('choose', i.dataset.in, i.value);
+        one('.rdk-picture').classList.add('rdk-waiting'); } });
+root.addEventListener('click', e => { const b =
+    e.target.closest('[data-do],[data-name],[data-view],[data-tab],[data-js]'); if (!b) return;
+    const menu = b.closest('.rdk-bar details'); if (menu) menu.open = false;
+    if (b.dataset.do) { pressed = b.dataset.do; send('do', b.dataset.do); }
+    else if (b.dataset.name) send('choose', b.dataset.name, b.dataset.value);
+    else if (b.dataset.view) { all('[data-view]').forEach(t => t.setAttribute('aria-selected', t === b));
+        one('.rdk-picture').classList.add('rdk-waiting'); send('choose', 'view', b.dataset.view); }
+    else if (b.dataset.tab) { tab = b.dataset.tab; pages(); }
+    else if (b.dataset.js === 'open') one('[type=file]').click();
+    else if (b.dataset.js === 'skip') { const v = one('.rdk-say1'); v.tabIndex = -1; v.focus(); }
+    else if (b.dataset.js === 'copy') { const link = JSON.parse(seen).share, text = app ? location.origin +
+        location.pathname + '?' + link : link;
+        copy(text); send('do', 'copied'); } });
+root.addEventListener('keydown', e => { const t = e.target;
+    if (e.key === 'Escape') all('details[open]').forEach(d => { if (d.contains(t)) { d.open = false;
+        d.querySelector('summary').focus(); } });
+    if (t.matches('.rdk-box') && e.key === 'Enter') { e.preventDefault();
+        t.dispatchEvent(new Event('change', {bubbles: true})); }
+    if (t.matches('.rdk-pick') && (e.key === 'Enter' || e.key === ' ')) { e.preventDefault(); pressed = t.dataset.do;
+        send('do', t.dataset.do); }
+    const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[e.key];
+    if (step && t.matches('[role=tab],.rdk-pick')) { e.preventDefault();
+        const row = t.matches('.rdk-pick') ? all('.rdk-pick') : [...t.parentNode.children], next = row[(row.indexOf(t)
+            + step + row.length) % row.length];
+        next.tabIndex = 0; next.focus(); if (t.matches('[role=tab]')) next.click(); } });
+root.addEventListener('toggle', e => { if (e.target.open && e.target.matches('.rdk-help'))
+    all('.rdk-help[open]').forEach(d => d.open = d === e.target); }, true);
+root.addEventListener('focusin', e => { e.target.dataset.lmSuppressShortcuts = 'true'; });
+const measure = () => { const p = one('.rdk-picture'); if (!p || !p.clientWidth) return;
+    const phone = root.clientWidth <= 700, room = app && !phone ? innerHeight - p.getBoundingClientRect().top -
+        scrollY - (one('.rdk-tray')?.offsetHeight || 90) - 50 : 380;
+    const now = [p.clientWidth - 24, Math.max(phone ? 320 : 300, Math.min(620, Math.round(room)))];
+        if (now.join() !== size) { size = now.join(); send('size', ...now); } };
+let wait; new ResizeObserver(() => { clearTimeout(wait); wait = setTimeout(measure, 200); }).observe(root);
+if (app) document.title = 'Rover explorer: will this rover do this mission?';
+pages(); apply(); setTimeout(measure, 50); addEventListener('resize', measure);
+})(this.closest('.rdk-explorer')); this.remove()
