@@ -157,6 +157,8 @@ def test_both_ends_of_every_slider(explorer, name):
 
 def test_positions_and_values_of_sliders_agree():
     for name, field in NUMBERS.items():
+        if name == "seed":
+            continue                                     # a million positions
         values = [field.at(i) for i in range(field.positions + 1)]
         assert values[0] == field.low and (values[-1] == field.high or field.endless) and values == sorted(values), name
         if field.step:                                   # rounding to two digits may merge neighbours of a ratio
@@ -327,7 +329,7 @@ def test_pins_compare_and_come_back(explorer):
 
 def test_a_link_brings_everything_back(explorer):
     chance = random.Random(4)
-    for _ in range(15):
+    for _ in range(5):
         names = chance.sample([*DESIGN, *MISSION, *SOIL, "minimum_range_km", "hub_no_load_speed_rad_s"], 4)
         explorer.set(rover=chance.choice(rdk.rover_names()), mission=chance.choice(rdk.scenario_names()),
                      wheel_count=chance.choice([4, 6]),
@@ -646,17 +648,17 @@ def test_a_random_walk_keeps_working_and_keeps_no_memory(explorer):
                 assert_current(explorer)
         assert_current(explorer)
 
-    walk(90, ["log", "mass", "wheel", "fleet", "why", "sweep"])
+    walk(70, ["log", "mass", "wheel", "fleet", "why", "sweep"])
     explorer._past.clear()
     tracemalloc.start()                                  # slows the walk down: only for its end
     try:
-        walk(6, ["log", "mass"])
+        walk(4, ["log", "mass"])
         before = tracemalloc.get_traced_memory()[0]
-        walk(20, ["log", "mass"])
+        walk(12, ["log", "mass"])
         grown = tracemalloc.get_traced_memory()[0] - before
     finally:
         tracemalloc.stop()
-    assert grown < 5e5                                   # a picture kept a move would be 0.8 MB
+    assert grown < 3e5                                   # a picture kept a move would be 0.5 MB
 
 
 # ---- fronts and solutions -------------------------------------------------------------------------------------
