@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 
+Real = float | np.ndarray                                # numbers that broadcast
+
 _ANY = dict(minimum=-math.inf, maximum=math.inf, above=None, below=None, whole=False, choices=None, infinite=False,
             scalar=False, optional=False)
 

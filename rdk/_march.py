@@ -1,11 +1,11 @@
 """The march of a mission hour by hour: sunlight, charge, driving; behind `rdk.mission`."""
-from types import SimpleNamespace
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 
 from . import power, sky
-from ._fields import Record
+from ._fields import Real, Record
 
 MEAN_SAMPLES = 200                                       # samples of the mission-average solar power
 MARCH_ELEMENTS = 2**17                                   # steps x lanes marched at once: 1 MB arrays stay in cache
@@ -44,30 +44,19 @@ class TraverseLog(Record):
     distance_km: np.ndarray
 
 
-def cruise_speed(average_solar_power_w, base_load_w, wheel_count, wheel_torque_nm, slip, wheel_radius_m, duty_cycle,
-                 drivetrain_efficiency=0.8, hub_no_load_speed_rad_s=5.0, maximum_speed_m_s=np.inf):
+def cruise_speed(average_solar_power_w: Real, base_load_w: Real, wheel_count: Real, wheel_torque_nm: Real, slip: Real,
+                 wheel_radius_m: Real, duty_cycle: Real, drivetrain_efficiency: Real = 0.8,
+                 hub_no_load_speed_rad_s: Real = 5.0, maximum_speed_m_s: Real = np.inf) -> tuple[Real, Real, Real]:
     """Cruise speed: what the average sunlight pays for, capped by the hub's no-load speed and by operations.
 
     The energy-balance speed alone, (P_solar - P_a - P_payload) r (1 - s) eta_m / (delta N_w T), reaches tens of m/s
-    on easy ground. The cap omega_0 r (1 - s) is not in the paper's text but shapes its highland plateau.
-
-    Parameters
-    ----------
-    average_solar_power_w, base_load_w : float or ndarray
-        Mission-average solar power; avionics and payload power, in W.
-    wheel_count : int or ndarray
-    wheel_torque_nm : float or ndarray
-        Driving torque of one wheel; where it is not positive, driving costs nothing and the hub sets the speed.
-    slip, wheel_radius_m, duty_cycle, drivetrain_efficiency : float or ndarray
-    hub_no_load_speed_rad_s : float or ndarray
-        omega_0; infinity lifts the cap.
-    maximum_speed_m_s : float or ndarray
-        What operations allow.
+    on easy ground. The cap omega_0 r (1 - s) is not in the paper's text but shapes its highland plateau. Where the
+    torque of a wheel is not positive, driving costs nothing and the hub sets the speed.
 
     Returns
     -------
     speed_m_s, energy_balance_speed_m_s, mobility_power_w : float or ndarray
-        Cruise speed; the speed without the cap; electrical power of all hubs while driving at cruise speed.
+        Cruise speed; the speed without the caps; electrical power of all hubs while driving at cruise speed.
     """
     rolling_radius = wheel_radius_m * (1 - slip)
     torque = np.maximum(wheel_torque_nm, 0.0) * wheel_count

@@ -13,15 +13,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ._fields import Record, require, together, unknown
+from ._fields import Record, limits_of, require, together, unknown
 from .design import DESIGN_SPACE, Design, Problem, Scenario
 from .sky import Skyline
 from .terramechanics import Soil
 
 _HERE = Path(__file__).resolve().parent
 DATA = _HERE / "data" if (_HERE / "data").is_dir() else _HERE.parent / "data"     # in a built wheel, in a clone
-_SOIL = ("sinkage_exponent", "cohesive_modulus_kn_m_n1", "frictional_modulus_kn_m_n2", "cohesion_kpa",
-         "friction_angle_deg", "shear_modulus_mm")
 _SCENARIO = ("latitude_deg", "duration_earth_days", "slope_deg", "duty_cycle", "traverse_limit_km", "payload_mass_kg",
              "payload_power_w")
 _ALIASES = {"n_wheels": "wheel_count"}                   # in the front files of the original release
@@ -55,17 +53,11 @@ def _rows(file_name, folder):
 
 
 def rows(file_name: str) -> list[dict]:
-    """The rows of a file in `data/`, as dictionaries of strings.
-
-    Raises
-    ------
-    FileNotFoundError, ValueError
-        If the file is missing or damaged; the message names it.
-    """
+    """The rows of a file in `data/`, as dictionaries of strings; an error names a file that is missing or damaged."""
     return [dict(row) for row in _rows(file_name, DATA)]
 
 
-def table(file_name):
+def table(file_name: str):
     """A file in `data/` as a pandas DataFrame, numbers and booleans converted."""
     import pandas as pd
     rows(file_name)                                      # its errors are clearer than pandas'
@@ -125,38 +117,20 @@ def rover_names() -> tuple[str, ...]:
 
 
 def soil(name: str) -> Soil:
-    """A catalogued Soil.
-
-    Parameters
-    ----------
-    name : str
-        One of `soil_names()`.
-
-    Raises
-    ------
-    ValueError
-        If there is no such soil; the message lists them.
+    """A catalogued Soil, one of `soil_names()`.
 
     Examples
     --------
     >>> soil("apollo-loose").friction_angle_deg
     30.0
     """
-    return _read(Soil, _pick("soils.csv", "soil", "soil", name), _SOIL, "soils.csv", name, name=name)
+    return _read(Soil, _pick("soils.csv", "soil", "soil", name), limits_of(Soil), "soils.csv", name, name=name)
 
 
 def scenario(name: str) -> Scenario:
-    """A catalogued Scenario, its panel tilted by min(80, |latitude|) degrees towards the noon sun.
+    """A catalogued Scenario, one of `scenario_names()`.
 
-    Parameters
-    ----------
-    name : str
-        One of `scenario_names()`.
-
-    Raises
-    ------
-    ValueError
-        If there is no such scenario; the message lists them.
+    Its panel is tilted by min(80, |latitude|) degrees towards the noon sun.
 
     Examples
     --------
@@ -191,17 +165,9 @@ def problem(name: str) -> Problem:
 
 
 def rover(name: str) -> Design:
-    """The design of a published rover; fields that its sources leave open are imputed (see `data/rovers.csv`).
+    """The design of a published rover, one of `rover_names()`.
 
-    Parameters
-    ----------
-    name : str
-        One of `rover_names()`.
-
-    Raises
-    ------
-    ValueError
-        If there is no such rover; the message lists them.
+    Fields that its sources leave open are imputed (see `data/rovers.csv`).
 
     Examples
     --------
@@ -223,10 +189,7 @@ def rover_row(name: str) -> dict:
 def skyline_sites() -> dict[str, dict]:
     """The sites that `skyline` knows, with what is known of each.
 
-    Returns
-    -------
-    dict of str to dict
-        Site -> label, latitude_deg, longitude_deg, ground_height_m, map_step_m, heights_m (above ground).
+    By name: label, latitude_deg, longitude_deg, ground_height_m, map_step_m and heights_m (above ground).
     """
     found = {}
     for row in _rows("skyline_sites.csv", DATA):
@@ -240,12 +203,7 @@ def skyline_sites() -> dict[str, dict]:
 def skyline(site: str, height_m: float = 2) -> Skyline:
     """The skyline of a site near the south pole, seen from a height above its ground.
 
-    Parameters
-    ----------
-    site : str
-        One of `skyline_sites()`.
-    height_m : float
-        1, 2 or 10: heights in between are refused, not interpolated.
+    Heights are 1, 2 or 10 m: those in between are refused, not interpolated.
 
     Examples
     --------
@@ -267,15 +225,7 @@ def skyline(site: str, height_m: float = 2) -> Skyline:
 # ---- designs and missions as files ------------------------------------------------------------------------------
 
 def to_json(design: Design, scenario: Scenario | None = None) -> str:
-    """JSON text of a design (or of the designs of a front) and, if given, its mission and how that is posed.
-
-    Parameters
-    ----------
-    design : Design
-        One, or a flat population.
-    scenario : Scenario, optional
-        A single one.
-    """
+    """JSON text of a design or a flat population and, if given, its (single) mission and how that is posed."""
     require(design=(design, Design), **{} if scenario is None else {"scenario": (scenario, Scenario)})
     if len(design.shape) > 1 or scenario is not None and scenario.shape:
         raise ValueError("to_json keeps one design or a flat population, and a single scenario; got shapes "
@@ -301,10 +251,7 @@ def _plain(value):
 def from_json(text: str) -> tuple[Design, Scenario | None]:
     """Design and Scenario (or None) from the text of `to_json`.
 
-    Raises
-    ------
-    ValueError
-        If the text is not such a file, a name stands there twice or is unknown, or a value is not allowed.
+    ValueError if the text is not such a file, a name stands there twice or is unknown, or a value is not allowed.
     """
     def once(pairs):
         for name, _ in pairs:
@@ -362,11 +309,7 @@ def _fields(kind, values, where):
 def to_csv(design: Design, performance: Record | None = None) -> str:
     """CSV text: one row a lane, the design's variables first, then its performance if given.
 
-    Parameters
-    ----------
-    design : Design
-    performance : Performance, optional
-        Of this design, on one mission or on several: they broadcast.
+    The performance may be on several missions: it broadcasts with the design.
     """
     require(design=(design, Design))
     columns = design.numbers() | ({} if performance is None else performance.numbers())
@@ -382,12 +325,7 @@ def from_csv(text: str) -> Design:
     """Design (a flat population; a single design for one row) from CSV text with the eleven variables as columns.
 
     Columns are separated by commas, or by semicolons or tabs: then decimal commas are read, too. More columns may
-    stand there.
-
-    Raises
-    ------
-    ValueError
-        If a column is missing or stands there twice, or a value is not a number or not allowed.
+    stand there. ValueError if a column is missing or stands there twice, or a value is not a number or not allowed.
     """
     lines = text.lstrip("\ufeff").lstrip().splitlines(keepends=True)
     if lines and re.fullmatch(r"sep=.\s*", lines[0]):

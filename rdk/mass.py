@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._fields import Record
+from ._fields import Real, Record
 
 
 @dataclass(frozen=True)
@@ -38,39 +38,21 @@ class MassBreakdown(Record):
         return {name: value for name, value in self.numbers().items() if name != "total_kg"}
 
 
-def mass_breakdown(*, wheel_radius_m, wheel_width_m, grouser_height_m, grouser_count, wheel_count, chassis_mass_kg,
-                   solar_area_m2, battery_capacity_wh, avionics_power_w, peak_wheel_torque_nm, payload_mass_kg=0.0,
-                   wheel_areal_density_kg_m2=8.0, grouser_thickness_m=0.002, grouser_density_kg_m3=2700.0,
-                   motor_base_mass_kg=0.15, motor_mass_per_torque_kg_nm=0.1, solar_areal_density_kg_m2=2.5,
-                   battery_specific_energy_wh_kg=120.0, avionics_base_mass_kg=0.3, avionics_mass_per_power_kg_w=0.05,
-                   linkage_base_mass_kg=0.5, linkage_chassis_fraction=0.08, harness_fraction=0.08,
-                   thermal_control_fraction=0.05, growth_fraction=0.2, wheel_web_factor=0.0, wheelbase_m=0.0,
-                   track_ratio=0.9, frame_mass_kg_m2=0.0):
-    """Mass line items and total of a rover.
+def mass_breakdown(
+        *, wheel_radius_m: Real, wheel_width_m: Real, grouser_height_m: Real, grouser_count: Real, wheel_count: Real,
+        chassis_mass_kg: Real, solar_area_m2: Real, battery_capacity_wh: Real, avionics_power_w: Real,
+        peak_wheel_torque_nm: Real, payload_mass_kg: Real = 0.0, wheel_areal_density_kg_m2: Real = 8.0,
+        grouser_thickness_m: Real = 0.002, grouser_density_kg_m3: Real = 2700.0, motor_base_mass_kg: Real = 0.15,
+        motor_mass_per_torque_kg_nm: Real = 0.1, solar_areal_density_kg_m2: Real = 2.5,
+        battery_specific_energy_wh_kg: Real = 120.0, avionics_base_mass_kg: Real = 0.3,
+        avionics_mass_per_power_kg_w: Real = 0.05, linkage_base_mass_kg: Real = 0.5,
+        linkage_chassis_fraction: Real = 0.08, harness_fraction: Real = 0.08, thermal_control_fraction: Real = 0.05,
+        growth_fraction: Real = 0.2, wheel_web_factor: Real = 0.0, wheelbase_m: Real = 0.0, track_ratio: Real = 0.9,
+        frame_mass_kg_m2: Real = 0.0) -> MassBreakdown:
+    """Mass line items and total of a rover, for arguments of any shapes that broadcast.
 
-    Parameters
-    ----------
-    wheel_radius_m, wheel_width_m, grouser_height_m : float or ndarray
-        r, b, h_g in metres.
-    grouser_count, wheel_count : int or ndarray
-        N_g on each wheel; N_w, 4 (rigid) or 6 (rocker-bogie).
-    chassis_mass_kg : float or ndarray
-        Structure m_c in kg.
-    solar_area_m2, battery_capacity_wh, avionics_power_w, peak_wheel_torque_nm : float or ndarray
-        A_s in m2, C_b in Wh, P_a in W, peak hub torque in N m per wheel.
-    payload_mass_kg : float or ndarray
-        In kg, added after growth.
-    wheel_areal_density_kg_m2 ... frame_mass_kg_m2 : float or ndarray
-        Coefficients; the defaults are those of the paper's release (see `data/constants.csv`).
-
-    Returns
-    -------
-    MassBreakdown
-        Line items and total in kg, with the broadcast shape of the inputs they depend on.
-
-    Notes
-    -----
-    Nothing is checked here: `Design`, `Scenario` and `Model` check their values. Any shapes that broadcast.
+    Sizes as in `Design`, the hub torque and the grousers those of one wheel; the payload is added after growth. The
+    coefficients' defaults are those of the paper's release (see `data/constants.csv`). Nothing is checked here.
 
     Examples
     --------

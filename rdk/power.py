@@ -6,17 +6,13 @@ Azimuths run from north, clockwise: 0 north, 90 east, 180 south.
 """
 import numpy as np
 
+from ._fields import Real
+
 ROUNDING = 1e-12                                         # sin(elevation) below this share of its terms is no sunlight
 
 
-def hour_angle_deg(time_h, synodic_day_h=708.734136):
-    """Hour angle at a time after local sunrise of a sun on the equator: -90 at 0, 0 at noon, in degrees.
-
-    Parameters
-    ----------
-    time_h, synodic_day_h : float or ndarray
-        Time since sunrise and length of the lunar day, in hours.
-    """
+def hour_angle_deg(time_h: Real, synodic_day_h: Real = 708.734136) -> Real:
+    """Hour angle at a time after local sunrise of a sun on the equator: -90 at 0, 0 at noon."""
     return 360 * np.asarray(time_h, float) / synodic_day_h - 90
 
 
@@ -30,18 +26,10 @@ def _sun_vector(latitude_deg, hour_angle, declination_deg):
     return east, north, up, abs(along) + abs(across)
 
 
-def sun_position(latitude_deg, hour_angle, declination_deg=0.0):
-    """Elevation and azimuth of the sun.
+def sun_position(latitude_deg: Real, hour_angle: Real, declination_deg: Real = 0.0) -> tuple[Real, Real]:
+    """Elevation above the smooth horizon and azimuth of the sun, clockwise from north, 0 to 360; all in degrees.
 
-    Parameters
-    ----------
-    latitude_deg, hour_angle, declination_deg : float or ndarray
-        In degrees; hour angle negative before noon.
-
-    Returns
-    -------
-    elevation_deg, azimuth_deg : float or ndarray
-        Elevation above the smooth horizon; azimuth clockwise from north, 0 to 360.
+    The hour angle is negative before noon.
 
     Examples
     --------
@@ -53,23 +41,17 @@ def sun_position(latitude_deg, hour_angle, declination_deg=0.0):
     return np.degrees(np.arcsin(np.clip(up, -1, 1))), np.degrees(np.arctan2(east, north)) % 360
 
 
-def incidence_factor(latitude_deg, hour_angle, tilt_deg=0.0, azimuth_deg=180.0, declination_deg=0.0, lit=None):
-    """cos(i) on a tilted panel, eq. solar-incidence: 0 where the sun is down or behind the panel.
+def incidence_factor(latitude_deg: Real, hour_angle: Real, tilt_deg: Real = 0.0, azimuth_deg: Real = 180.0,
+                     declination_deg: Real = 0.0, lit: Real | None = None) -> Real:
+    """cos(i) on a tilted panel, eq. solar-incidence, 0 to 1: 0 where the sun is down or behind the panel.
 
     Parameters
     ----------
-    latitude_deg, hour_angle, declination_deg : float or ndarray
-        As in `sun_position`.
     tilt_deg, azimuth_deg : float or ndarray
-        Panel tilt from the horizontal and the direction it faces, in degrees.
+        Panel tilt from the horizontal and the direction it faces; the other angles are those of `sun_position`.
     lit : float or ndarray, optional
         Share of the solar disc above the skyline, from `rdk.sky.lit_fraction`: it takes the place of the cut at the
         level horizon, below which a ridge still sees the sun.
-
-    Returns
-    -------
-    float or ndarray
-        Between 0 and 1.
     """
     east, north, up, size = _sun_vector(latitude_deg, hour_angle, declination_deg)
     tilt, azimuth = np.radians(tilt_deg), np.radians(azimuth_deg)
@@ -81,26 +63,16 @@ def incidence_factor(latitude_deg, hour_angle, tilt_deg=0.0, azimuth_deg=180.0, 
     return np.where(up > ROUNDING * size, facing, 0.0)[()]
 
 
-def panel_power(area_m2, incidence, *, efficiency=0.28, dust_factor=0.9, solar_constant_w_m2=1361.0):
-    """Electrical power of the array in W, eq. solar-power: S_0 A eta d max(0, cos i).
-
-    Parameters
-    ----------
-    area_m2 : float or ndarray
-        A_s in m2.
-    incidence : float or ndarray
-        cos(i), from `incidence_factor`.
-    efficiency, dust_factor : float or ndarray
-        eta_s and d_s, 0 to 1.
-    solar_constant_w_m2 : float or ndarray
-        S_0 in W/m2.
-    """
+def panel_power(area_m2: Real, incidence: Real, *, efficiency: Real = 0.28, dust_factor: Real = 0.9,
+                solar_constant_w_m2: Real = 1361.0) -> Real:
+    """Electrical power of the array in W, eq. solar-power: S_0 A eta d max(0, cos i), `incidence` being the last."""
     return solar_constant_w_m2 * efficiency * dust_factor * area_m2 * incidence
 
 
-def march_battery(net_power_w, time_step_h, capacity_wh, *, soc_initial=1.0, soc_floor=0.15, charge_efficiency=0.95,
-                  discharge_efficiency=0.95):
-    """Stored energy after each time step, eq. battery-update, clamped between the floor and a full pack.
+def march_battery(net_power_w: np.ndarray, time_step_h: Real, capacity_wh: Real, *, soc_initial: Real = 1.0,
+                  soc_floor: Real = 0.15, charge_efficiency: Real = 0.95,
+                  discharge_efficiency: Real = 0.95) -> np.ndarray:
+    """Stored energy in Wh after each time step, eq. battery-update, clamped between the floor and a full pack.
 
     Surplus at full charge is discarded; demand on the floor is not served. (The traverse throttles driving there,
     which cannot lift the charge above the floor: the march does not depend on it.)
@@ -108,16 +80,9 @@ def march_battery(net_power_w, time_step_h, capacity_wh, *, soc_initial=1.0, soc
     Parameters
     ----------
     net_power_w : ndarray, shape (steps, ...)
-        Power into the pack in each step, in W; overwritten, and returned as the result.
+        Power into the pack in each step; overwritten, and returned as the result.
     time_step_h : float or ndarray, shape (steps, ...)
-        Length of the steps in hours.
-    capacity_wh, soc_initial, soc_floor, charge_efficiency, discharge_efficiency : float or ndarray, shape (...)
-        Capacity in Wh; the others are fractions.
-
-    Returns
-    -------
-    ndarray, shape (steps, ...)
-        Stored energy in Wh at the end of each step.
+        Length of the steps. All other arguments have the shape (...).
     """
     energy = net_power_w
     energy *= np.where(energy >= 0, charge_efficiency, 1 / np.asarray(discharge_efficiency))

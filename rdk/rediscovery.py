@@ -59,9 +59,6 @@ def rediscover(rovers: Iterable[str] = tuple(REDISCOVERED), *, population: int =
 
     Parameters
     ----------
-    rovers : sequence of str
-        Among `REDISCOVERED`.
-    population : int
     generations : sequence of int
         Where to look; the paper's figure is at 16.
     seeds : sequence of int
@@ -106,15 +103,9 @@ def _found(target, generation, fronts):
 
 
 def baselines(found: pd.DataFrame, *, count: int = 20000, seed: int = 0) -> pd.DataFrame:
-    """What distances chance gives, for the rovers of a rediscovery check.
+    """What distances chance gives, for the rovers of a rediscovery check: one row of `rediscover` a rover.
 
-    Parameters
-    ----------
-    found : pandas.DataFrame
-        From `rediscover`, one row a rover: its number of front designs sets how many chances chance gets.
-    count : int
-        Random designs a rover.
-    seed : int
+    Its number of front designs sets how many chances chance gets, of `count` random designs.
 
     Returns
     -------
@@ -123,8 +114,7 @@ def baselines(found: pd.DataFrame, *, count: int = 20000, seed: int = 0) -> pd.D
         random designs that are feasible on its mission), feasible_pair (mean distance of two of those),
         centroid (distance of the rover to their centroid), nearest_feasible (mean distance of the nearest of
         as many random feasible designs as the front has), nearest_capped and nearest_capped_low (the same
-        under the rover's mass ceiling, and its 5 % quantile), capped_designs (how many random designs met
-        it).
+        under the rover's mass ceiling, and its 5 % quantile), capped_designs (how many random designs met it).
     """
     random, rows = np.random.default_rng(seed), []
     count = int(check("count", count, 100, whole=True, scalar=True))

@@ -33,22 +33,13 @@ CEILING_SHARE = 0.01
 # ---- statistics of fronts ----------------------------------------------------------------------------------
 
 def front_statistics(fronts: Iterable[Front]) -> pd.DataFrame:
-    """What the designs of each front have in common.
+    """What the designs of each front have in common, one row a front; NaN where it is empty.
 
-    Parameters
-    ----------
-    fronts : iterable of Front
-        Such as `study(...).values()`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a front: scenario, seed, shear_scale, obstacle_height_m, generations, designs; smallest and
-        largest range, mass and slope capability (`range_min_km` ...), median slope capability and the slope
-        capability of the designs at the largest range (median, `slope_at_cap_deg`); range of the lightest
-        design; share with four wheels; shares at a bound: wheel radius, grouser height and grouser count at
-        their ceilings, wheel width at its floor (all within 1 % of the searched range) and in the lowest 5 %
-        of it; medians of battery, array, radius and width; hypervolume. NaN where a front is empty.
+    scenario, seed, shear_scale, obstacle_height_m, generations, designs; smallest and largest range, mass and slope
+    capability (`range_min_km` ...), median slope capability and the slope capability of the designs at the largest
+    range (median, `slope_at_cap_deg`); range of the lightest design; share with four wheels; shares at a bound: wheel
+    radius, grouser height and grouser count at their ceilings, wheel width at its floor (all within 1 % of the searched
+    range) and in the lowest 5 % of it; medians of battery, array, radius and width; hypervolume.
     """
     def at_ceiling(name):
         return np.mean(place(front.designs, name) >= 1 - CEILING_SHARE)
@@ -86,23 +77,11 @@ def place(designs: Design, name: str) -> np.ndarray:
 
 def over_generations(scenarios: Iterable[Scenario], seeds: Iterable[int], generations: Iterable[int], *, executor=None,
                      **options) -> pd.DataFrame:
-    """Front statistics at several generations of the same searches.
+    """Front statistics of searches (one a scenario and seed) at several generations of each.
 
-    Parameters
-    ----------
-    scenarios : sequence of Scenario
-    seeds : sequence of int
-    generations : sequence of int
-        Where to look; each search runs to the last of them.
-    executor : concurrent.futures.Executor, optional
-        Runs the searches in parallel, with the same result.
-    **options
-        Passed to `pareto_front`, such as `population`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Rows of `front_statistics`; the front at generation g is that of a search of g generations.
+    Each search runs to the last of `generations`; its front at generation g is that of a search of g generations.
+    `executor`, of concurrent.futures, runs the searches in parallel, with the same result. `options` are passed to
+    `pareto_front`, such as `population`.
     """
     wanted = sorted({int(check("generations", g, 1, whole=True, scalar=True)) for g in generations})
     jobs = [(scenario, wanted, dict(options, seed=seed)) for scenario in scenarios for seed in seeds]
@@ -123,18 +102,10 @@ def fronts_at(scenario: Scenario, generations: list, options: dict) -> list[Fron
 
 
 def crossover(statistics: pd.DataFrame) -> pd.DataFrame:
-    """Lowest required obstacle height at which rocker-bogie designs enter each front.
+    """Lowest required obstacle height at which rocker-bogie designs enter, from `front_statistics` at several heights.
 
-    Parameters
-    ----------
-    statistics : pandas.DataFrame
-        Of fronts at several obstacle heights.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a scenario: scenario, crossover_m (NaN if they never do), highest_rigid_m, the largest height
-        at which a four-wheel design is still on the front.
+    One row a scenario: scenario, crossover_m (NaN if they never do), highest_rigid_m, the largest height at which a
+    four-wheel design is still on the front.
     """
     rows = []
     for name, group in statistics.groupby("scenario", sort=False):
@@ -147,22 +118,10 @@ def crossover(statistics: pd.DataFrame) -> pd.DataFrame:
 # ---- what a variable is worth ------------------------------------------------------------------------------
 
 def ballasted(designs: Design, scenario: Scenario, total_mass_kg, *, model: Model = Model()) -> Design:
-    """Designs brought to a total mass by their chassis, so that a variable can be judged at equal mass.
+    """Designs brought to a total mass by their chassis alone, so that a variable can be judged at equal mass.
 
-    Parameters
-    ----------
-    designs : Design
-    scenario : Scenario
-        Gives the payload.
-    total_mass_kg : float or ndarray
-        Wanted total mass, in kg.
-    model : Model
-
-    Returns
-    -------
-    Design
-        With the chassis mass changed, and nothing else. Where even the lightest chassis of the design space
-        is too heavy, that chassis is taken and the design stays heavier than wanted.
+    Where even the lightest chassis of the design space is too heavy, that chassis is taken and the design stays heavier
+    than wanted. The scenario gives the payload.
     """
     light = dataclasses.replace(designs, chassis_mass_kg=DESIGN_SPACE["chassis_mass_kg"].low)
     heavy = dataclasses.replace(designs, chassis_mass_kg=DESIGN_SPACE["chassis_mass_kg"].low + 1)
@@ -173,21 +132,11 @@ def ballasted(designs: Design, scenario: Scenario, total_mass_kg, *, model: Mode
 
 
 def swapped(front: Front, **changes: float) -> pd.DataFrame:
-    """Every design of a front with a variable changed and the mass made up in the chassis.
+    """Every design of a front with some variables changed to new values and the mass made up in the chassis.
 
-    If no objective moves, nothing in the search holds that variable where it is.
-
-    Parameters
-    ----------
-    front : Front
-    **changes : float
-        Design variables and their new values.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a design: its mass, the old values (`old_...`), and by how much range, mass and slope
-        capability change (`range_change_km`, `mass_change_kg`, `slope_change_deg`).
+    If no objective moves, nothing in the search holds that variable where it is. One row a design: its mass, the old
+    values (`old_...`), and by how much range, mass and slope capability change (`range_change_km`, `mass_change_kg`,
+    `slope_change_deg`).
     """
     old = front.performance
     with warnings.catch_warnings():
@@ -202,17 +151,7 @@ def swapped(front: Front, **changes: float) -> pd.DataFrame:
 
 
 def dominated(front: Front, others: Iterable[Front]) -> np.ndarray:
-    """Which designs of a front are dominated by a design of other fronts, in the front's own objectives.
-
-    Parameters
-    ----------
-    front : Front
-    others : iterable of Front
-
-    Returns
-    -------
-    ndarray of bool, shape (n,)
-    """
+    """Which designs of a front, shape (n,), a design of other fronts dominates in the front's own objectives."""
     mine = minimised(front.performance, front.problem.objectives)
     theirs = np.concatenate([minimised(other.performance, front.problem.objectives) for other in others])
     return beaten(mine, theirs)
@@ -224,25 +163,7 @@ def family(name: str, count: int, seed: int = 0) -> list[Scenario]:
     """Scenarios spread over a canonical scenario's family: latitude, duration and slope vary together.
 
     A Latin hypercube over the ranges of the paper's Table 1; everything else stays as catalogued, the panel
-    is tilted anew for each latitude.
-
-    Parameters
-    ----------
-    name : str
-        A canonical scenario.
-    count : int
-        How many, 1 or more.
-    seed : int
-        Same seed, same scenarios.
-
-    Returns
-    -------
-    list of Scenario
-
-    Raises
-    ------
-    ValueError
-        If the scenario has no family.
+    is tilted anew for each latitude. Same seed, same scenarios.
     """
     from scipy.stats import qmc
     scenario = catalog.scenario(name)
@@ -267,22 +188,15 @@ def sobol(scenario: Scenario, *, metrics=("range_km", "total_mass_kg", "slope_ca
           model: Model = Model()) -> pd.DataFrame:
     """Sobol indices of metrics: the share of their variance that each input explains.
 
-    Over the design variables, uniform in the design space; or, when a design is given, over the uncertain
+    Over the design variables, uniform in the design space; or, when a single design is given, over the uncertain
     inputs of `data/uncertainties.csv` for that design. All points are evaluated in one call.
 
     Parameters
     ----------
-    scenario : Scenario
-    metrics : sequence of str
-        Performance fields.
-    design : Design, optional
-        A single design whose uncertainty is asked for.
     count : int
         Size of the two base samples, a power of 2; the evaluation is of count * (inputs + 2) points.
-    seed : int
     bounds : dict of str to (float, float), optional
         Narrower limits of design variables.
-    model : Model
 
     Returns
     -------

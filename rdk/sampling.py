@@ -46,19 +46,7 @@ def demands(wanted, argument: str = "constraints") -> tuple:
 def random_designs(count: int, seed: int | None = None, bounds: dict | None = None) -> Design:
     """Designs drawn uniformly from the design space; grouser counts whole, 4 or 6 wheels with equal chance.
 
-    Parameters
-    ----------
-    count : int
-        How many, 1 or more.
-    seed : int, optional
-        Same seed, same designs.
-    bounds : dict of str to (float, float), optional
-        Narrower or wider limits of some variables, in place of those in DESIGN_SPACE.
-
-    Returns
-    -------
-    Design
-        Arrays of length `count`.
+    `bounds` has limits (low, high) of some variables in place of those in DESIGN_SPACE; same seed, same designs.
 
     Examples
     --------
@@ -115,15 +103,7 @@ def encode(designs: Design, bounds: dict | None = None) -> np.ndarray:
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Sweep(Shown):
-    """A sweep over one or two fields.
-
-    Attributes
-    ----------
-    fields : tuple of str
-    values : tuple of ndarray
-    performance : Performance
-        Shape (n,) or (n, m): the first field runs down, the second across.
-    """
+    """A sweep over one or two fields: shape (n,) or (n, m), the first field runs down, the second across."""
     fields: tuple
     values: tuple
     performance: Performance
@@ -166,23 +146,13 @@ def replaced(design: Design, scenario: Scenario, model: Model, changes: dict) ->
 
 
 def sweep(design: Design, scenario: Scenario, over: dict, *, model: Model = Model()) -> Sweep:
-    """Performance along one field or over a grid of two, in one evaluation.
+    """Performance of a single design on a single mission along one field or over a grid of two, in one evaluation.
 
     Parameters
     ----------
-    design : Design
-        A single design.
-    scenario : Scenario
-        A single mission.
     over : dict of str to array_like
         One or two fields of Design, Scenario, Soil or Model with their values; the mission duration and names cannot
         be swept, since they set the time steps.
-    model : Model
-        A single one.
-
-    Returns
-    -------
-    Sweep
 
     Examples
     --------
@@ -242,10 +212,8 @@ class Intervals(Shown):
         Whether the low and the high end are a clamp or stand beside an atom: at least 1 % of the draws share the value
         of the end, or the least (the largest) value of all - a limit of the model or of the mission, a stall at 0. A
         share of draws then says more than the end.
-    performance : Performance
-        Of the nominal inputs.
-    draws : Performance
-        All draws, shape (draws, ...).
+    performance, draws : Performance
+        Of the nominal inputs, and of all draws: shape (draws, ...).
     """
     level: float
     performance: Performance
@@ -320,31 +288,16 @@ def intervals(design: Design, scenario: Scenario, *, draws: int = DRAWS, seed: i
               model: Model = Model(), table: list | None = None) -> Intervals:
     """Intervals of every metric by Monte-Carlo through the physics: soil, wheel model, hub, mass, power.
 
+    The inputs are independent, and they are what the table names: not what the models leave out. Metrics that are NaN
+    in a draw (a buried wheel) are left out of its percentiles. One design or a flat population; every design sees the
+    same draws, and the same seed gives the same bits.
+
     Parameters
     ----------
-    design : Design
-        One design or a population of shape (n,).
-    scenario : Scenario
-        A single mission.
-    draws : int
-        Samples, 1 or more.
-    seed : int
-        Same seed, same bits; every design sees the same draws.
     level : float
         Probability inside the interval, between 0 and 1.
-    model : Model
-        Nominal coefficients.
     table : list of dict, optional
         In place of `data/uncertainties.csv`; see `inputs_at`.
-
-    Returns
-    -------
-    Intervals
-
-    Notes
-    -----
-    The inputs are independent, and they are what the table names: not what the models leave out. Metrics that are NaN
-    in a draw (a buried wheel) are left out of its percentiles.
 
     Examples
     --------
@@ -374,12 +327,8 @@ def intervals(design: Design, scenario: Scenario, *, draws: int = DRAWS, seed: i
 class Attribution(Shown):
     """Shapley values: what each design variable contributes to the difference of two designs.
 
-    Attributes
-    ----------
-    contributions : dict of str to ndarray
-        By metric, one value a design variable in the order of DESIGN_SPACE; they add up to
-        `performance - baseline_performance`.
-    performance, baseline_performance : Performance
+    `contributions` has, by metric, one value a design variable in the order of DESIGN_SPACE; they add up to
+    `performance - baseline_performance`.
     """
     contributions: dict
     performance: Performance
@@ -396,24 +345,12 @@ class Attribution(Shown):
 
 
 def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: Model = Model()) -> Attribution:
-    """Exact Shapley values of each metric's difference between two designs, over the eleven design variables.
+    """Exact Shapley values of each metric's difference between two single designs, over the eleven design variables.
 
     Every mixture of the two designs is evaluated, 2^k of them in one call where k variables differ, and each variable
     is credited with its mean marginal effect over all orders in which the variables could change (Shapley 1953). A
-    variable with one value in both designs has no effect and no share.
-
-    Parameters
-    ----------
-    design, baseline : Design
-        Single designs.
-    scenario : Scenario
-        A single mission.
-    model : Model
-
-    Returns
-    -------
-    Attribution
-        For every metric that is a number in all mixtures; true/false metrics count as 1 and 0.
+    variable with one value in both designs has no effect and no share. Metrics that are not finite in all mixtures are
+    left out; true/false ones count as 1 and 0.
 
     Examples
     --------

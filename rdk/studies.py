@@ -59,14 +59,12 @@ def fronts(scenarios: Iterable[Scenario], *, seeds: Iterable[int] | None = None,
            obstacle_heights_m: Iterable[float] = (0.0,), population: int | None = None, generations: int | str = 60,
            start: str | None = None, model: Model = Model(), executor=None, folder: str | Path | None = None,
            on_front: Callable | None = None) -> dict[Case, Front]:
-    """Fronts for every combination of scenario, seed, shear scale and obstacle height.
+    """Fronts for every combination of scenario, seed, shear scale and obstacle height, in that order.
 
     Parameters
     ----------
-    scenarios : sequence of Scenario
     seeds : sequence of int, optional
         Default: each scenario's own seed, 0 where it has none.
-    shear_scales, obstacle_heights_m : sequence of float
     population, generations, start
         As in `pareto_front`; `start` is "light" or None.
     model : Model
@@ -79,11 +77,6 @@ def fronts(scenarios: Iterable[Scenario], *, seeds: Iterable[int] | None = None,
         there is loaded and only the rest computed; a damaged file is computed anew.
     on_front : callable, optional
         Called with (finished, total, case, front) as each front finishes.
-
-    Returns
-    -------
-    dict of Case to Front
-        In the order of the combinations.
     """
     if isinstance(scenarios, Scenario):
         raise ValueError(f"scenarios must be a list of Scenario; got the single {scenarios.name!r}")

@@ -72,10 +72,9 @@ class KernelOptions(TypedDict, total=False):
         0.18 and 0.32 (their loose sand).
     grouser_lift_cap : float or ndarray
         Largest relative gain in shear by grousers, 0.6 by default.
-    shear_scale : float or ndarray
-        Multiplies the shear stress, 1 by default: the paper's robustness study.
-    sinkage_scale : float or ndarray
-        Multiplies the sinkage that is reported, 1 by default; the forces stay as they are.
+    shear_scale, sinkage_scale : float or ndarray
+        1 by default. Multiply the shear stress (the paper's robustness study) and the sinkage that is reported, which
+        leaves the forces as they are.
 
     References
     ----------
@@ -132,24 +131,17 @@ def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: Arr
                  **options: Unpack[KernelOptions]) -> WheelForces:
     """Drawbar pull, torque and sinkage of one wheel at given load and slip.
 
-    The entry angle is the one at which the soil's vertical reaction equals the load (the paper's force
-    balance); forces follow from the stress integrals over the contact arc.
+    The entry angle is the one at which the soil's vertical reaction equals the load (the paper's force balance);
+    forces follow from the stress integrals over the contact arc. NaN where no angle in (0, 90 deg) carries the load.
 
     Parameters
     ----------
-    wheel : Wheel
-    soil : Soil
     vertical_load_n : float or ndarray
-        Load on the wheel in newtons, positive.
+        Load on the wheel, positive.
     slip : float or ndarray
         s = 1 - v / (omega r), eq. slip, from -1 to 1; negative when braking.
     **options
         See `KernelOptions`.
-
-    Returns
-    -------
-    WheelForces
-        NaN where no entry angle in (0, 90 deg) carries the load.
 
     References
     ----------
@@ -175,18 +167,8 @@ def slip_balance(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, required_
     Two equations, vertical load and pull (eq. slip-balance), in two unknowns, entry angle and slip. Where the pull
     falls short of the demand throughout the slip interval the wheel is stalled, at `slip_max`; where it exceeds it
     throughout, the wheel slides, at `slip_min` (in an interval above 0 it rolls instead, without slip). Where the pull
-    peaks inside the interval and meets the demand twice, the lower slip is the answer.
-
-    Parameters
-    ----------
-    wheel : Wheel
-    soil : Soil
-    vertical_load_n, required_pull_n : float or ndarray
-        Load on and pull demanded from one wheel, in newtons; the load positive.
-    slip_min, slip_max : float or ndarray
-        Ends of the slip interval.
-    **options
-        See `KernelOptions`.
+    peaks inside the interval and meets the demand twice, the lower slip is the answer. Load (positive) and demand are
+    those of one wheel.
     """
     found = _solve("balance", wheel, soil, options, vertical_load_n=check("vertical_load_n", vertical_load_n, above=0),
                    required_pull_n=check("required_pull_n", required_pull_n), **_interval(slip_min, slip_max))
@@ -196,28 +178,11 @@ def slip_balance(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, required_
 def slope_capability(wheel: Wheel, soil: Soil, weight_n: ArrayLike, *, capability_slip: ArrayLike = CAPABILITY_SLIP,
                      capability_limit_deg: ArrayLike = CAPABILITY_LIMIT_DEG,
                      **options: Unpack[KernelOptions]) -> float | np.ndarray:
-    """Steepest slope that a wheel climbs at the slip of peak pull.
+    """Steepest slope that a wheel climbs at the slip of peak pull, in degrees; 0 where it is buried or cannot move.
 
-    On a slope alpha a wheel of weight w carries w cos(alpha) and must pull w sin(alpha). At fixed slip both are
-    functions of the entry angle alone, so F_z^2 + DP^2 = w^2 fixes it and alpha = atan2(DP, F_z).
-
-    Parameters
-    ----------
-    wheel : Wheel
-    soil : Soil
-    weight_n : float or ndarray
-        Weight on one wheel (not its normal component) in newtons, positive.
-    capability_slip : float or ndarray
-        Slip at which the pull is taken; 0.6 by the peak-pull convention (Wong 2008).
-    capability_limit_deg : float or ndarray
-        Steeper slopes are reported as this one.
-    **options
-        See `KernelOptions`.
-
-    Returns
-    -------
-    float or ndarray
-        Slope in degrees: 0 where the wheel cannot move on the flat or is buried.
+    On a slope alpha a wheel of weight w (positive, not its normal component) carries w cos(alpha) and must pull
+    w sin(alpha). At fixed slip - 0.6 by the peak-pull convention (Wong 2008) - both are functions of the entry angle
+    alone, so F_z^2 + DP^2 = w^2 fixes it and alpha = atan2(DP, F_z). Steeper slopes than the limit are reported as it.
     """
     return _solve("capability", wheel, soil, options, weight_n=check("weight_n", weight_n, above=0),
                   **_at_capability(capability_slip, capability_limit_deg))[0]
@@ -229,23 +194,8 @@ def climb(wheel: Wheel, soil: Soil, weight_n: ArrayLike, slope_deg: ArrayLike, *
           **options: Unpack[KernelOptions]) -> tuple[SlipBalance, float | np.ndarray]:
     """Slip balance on a slope and slope capability in one call: what a mission needs of the wheel.
 
-    Parameters
-    ----------
-    wheel : Wheel
-    soil : Soil
-    weight_n : float or ndarray
-        Weight on one wheel in newtons, positive.
-    slope_deg : float or ndarray
-        Slope to climb, in degrees, above -90 and below 90.
-    slip_min, slip_max, capability_slip, capability_limit_deg, **options
-        As in `slip_balance` and `slope_capability`.
-
-    Returns
-    -------
-    SlipBalance
-        At load weight * cos(slope) and required pull weight * sin(slope), eq. required-dp.
-    float or ndarray
-        Slope capability in degrees.
+    The balance is that of load weight * cos(slope) and required pull weight * sin(slope), eq. required-dp, with the
+    slope above -90 and below 90 degrees.
     """
     *balance, capability = _solve(
         "climb", wheel, soil, options, weight_n=check("weight_n", weight_n, above=0),
@@ -260,18 +210,12 @@ def contact_stress(wheel: Wheel, soil: Soil, entry_angle_rad: ArrayLike, slip: A
 
     Parameters
     ----------
-    wheel : Wheel
-    soil : Soil
     entry_angle_rad : float or ndarray
-        theta_1 in radians, in (0, pi/2].
-    slip : float or ndarray
-        From -1 to 1.
+        theta_1, in (0, pi/2].
     angle_rad : float or ndarray
-        theta in radians from the downward vertical; outside [0, theta_1] the stresses are 0.
+        theta from the downward vertical; outside [0, theta_1] the stresses are 0.
     stress_level : float or ndarray
         Multiplies the normal stress; as `wheel_forces` returns it.
-    **options
-        See `KernelOptions`.
     """
     def stresses(patch, theta_1, s, theta, level):
         theta_m = (patch.c1 + patch.c2 * abs(s)) * theta_1               # transition angle
@@ -294,32 +238,16 @@ def contact_stress(wheel: Wheel, soil: Soil, entry_angle_rad: ArrayLike, slip: A
 def grouser_lift(wheel: Wheel, grouser_lift_cap: ArrayLike = 0.6) -> float | np.ndarray:
     """Factor 1 + min(N_g h_g / (2 pi r), cap) by which engaged grousers raise the shear stress, eq. grouser.
 
-    Parameters
-    ----------
-    wheel : Wheel
-    grouser_lift_cap : float or ndarray
-        Largest gain, dimensionless; beyond it the shear planes of neighbouring grousers interfere.
+    Beyond the cap the shear planes of neighbouring grousers interfere.
     """
     return 1 + np.minimum(wheel.grouser_count * wheel.grouser_height_m / (2 * np.pi * wheel.radius_m),
                           grouser_lift_cap)
 
 
 def compaction_resistance(wheel: Wheel, soil: Soil, sinkage_m: ArrayLike) -> float | np.ndarray:
-    """Force that compacting the rut costs: the work of Bekker's pressure down to the sinkage, per metre driven.
+    """Force in newtons that compacting the rut costs, b (k_c / b + k_phi) z^(n+1) / (n+1), at sinkage z.
 
-    A diagnostic: the kernel's drawbar pull already contains it.
-
-    Parameters
-    ----------
-    wheel : Wheel
-    soil : Soil
-    sinkage_m : float or ndarray
-        Rut depth in metres, zero or more.
-
-    Returns
-    -------
-    float or ndarray
-        b (k_c / b + k_phi) z^(n+1) / (n+1) in newtons.
+    The work of Bekker's pressure down to that depth, per metre driven. A diagnostic: the drawbar pull contains it.
     """
     z, n = check("sinkage_m", sinkage_m, 0), soil.sinkage_exponent
     return wheel.width_m * _k_eff(wheel, soil) * z ** (n + 1) / (n + 1)

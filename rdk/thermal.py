@@ -5,52 +5,29 @@ effective sink temperature. Good for a survival flag, not for a thermal design.
 """
 import numpy as np
 
+from ._fields import Real
+
 STEFAN_BOLTZMANN = 5.670374419e-8                        # W m-2 K-4, exact; scipy.constants is slow to load
 ZERO_CELSIUS = 273.15
 
 
-def enclosure_area(chassis_mass_kg, base_m2=0.05, coefficient_m2=0.02):
-    """Radiating area of the warm enclosure.
-
-    Parameters
-    ----------
-    chassis_mass_kg : float or ndarray
-        m_c in kg.
-    base_m2, coefficient_m2 : float or ndarray
-        A_r = base + coefficient * m_c^(2/3), in m2 with the mass in kilograms.
-
-    Returns
-    -------
-    float or ndarray
-        A_r in m2.
-    """
+def enclosure_area(chassis_mass_kg: Real, base_m2: Real = 0.05, coefficient_m2: Real = 0.02) -> Real:
+    """Radiating area of the warm enclosure in m2: base + coefficient * m_c^(2/3), with the chassis mass in kg."""
     return base_m2 + coefficient_m2 * np.cbrt(chassis_mass_kg) ** 2
 
 
-def absorbed_sunlight(latitude_deg, area_m2, *, absorptivity=0.3, sunlit_fraction=0.25, solar_constant_w_m2=1361.0):
+def absorbed_sunlight(latitude_deg: Real, area_m2: Real, *, absorptivity: Real = 0.3, sunlit_fraction: Real = 0.25,
+                      solar_constant_w_m2: Real = 1361.0) -> Real:
     """Sunlight that the enclosure absorbs at noon: alpha S_0 cos(latitude) times the sunlit part of its area, in W."""
     return (absorptivity * solar_constant_w_m2 * np.maximum(np.cos(np.radians(latitude_deg)), 0.0) * sunlit_fraction
             * area_m2)
 
 
-def node_temperature(heat_w, area_m2, sink_temperature_k, *, emissivity=0.85):
-    """Equilibrium temperature at which the node radiates what it gains, eq. thermal-node.
+def node_temperature(heat_w: Real, area_m2: Real, sink_temperature_k: Real, *, emissivity: Real = 0.85) -> Real:
+    """Temperature in degrees Celsius at which the node radiates what it gains, eq. thermal-node.
 
-    Parameters
-    ----------
-    heat_w : float or ndarray
-        Q_in: absorbed sunlight, dissipation and heaters, in W, zero or more.
-    area_m2 : float or ndarray
-        Radiating area in m2.
-    sink_temperature_k : float or ndarray
-        Effective temperature of the surroundings in kelvin; their infrared is in this term.
-    emissivity : float or ndarray
-        Infrared emissivity, 0 to 1.
-
-    Returns
-    -------
-    float or ndarray
-        Temperature in degrees Celsius: (T_sink^4 + Q / (eps sigma A))^(1/4).
+    (T_sink^4 + Q / (eps sigma A))^(1/4), with Q the absorbed sunlight, dissipation and heaters, zero or more; the
+    infrared of the surroundings is in their effective temperature.
 
     Examples
     --------

@@ -36,12 +36,10 @@ class Front(Shown):
 
     Attributes
     ----------
-    designs : Design
-    performance : Performance
-        Both with shape (n,); n is 0 where no design met the constraints, and `message` says so.
+    designs, performance : Design, Performance
+        With shape (n,); n is 0 where no design met the constraints, and `message` says so.
     scenario : Scenario
         As searched: with the problem's traverse limit.
-    model : Model
     problem : Problem
         Objectives, constraints and seed of the search.
     objective_history : tuple of ndarray
@@ -132,23 +130,11 @@ def beaten(mine: np.ndarray, theirs: np.ndarray) -> np.ndarray:
 
 
 def hypervolume(minimised: np.ndarray, objectives: dict, scenario: Scenario) -> float:
-    """Normalised hypervolume of objective vectors.
+    """Normalised hypervolume of objective vectors, shape (n, m), in the order of `objectives`, all to be minimised.
 
     Each objective is scaled to [0, 1] - range by the traverse limit, mass by 80 kg, slope capability by 45 deg, as in
-    the paper's release - and clipped; the reference point is 1.05 in every objective.
-
-    Parameters
-    ----------
-    minimised : ndarray, shape (n, m)
-        Objectives, those to be maximised with the sign changed.
-    objectives : dict of str to str
-        Their names and directions, in order.
-    scenario : Scenario
-
-    Returns
-    -------
-    float
-        NaN where an objective has no published scale, or range no limit.
+    the paper's release - and clipped; the reference point is 1.05 in every objective. NaN where an objective has no
+    published scale, or range no limit.
     """
     scales = np.array([HYPERVOLUME_SCALES.get(name, math.nan) or scenario.traverse_limit_km for name in objectives])
     if not ((scales > 0) & (scales < math.inf)).all():
@@ -210,7 +196,8 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
 
     pymoo's NSGA-II with the paper's operators: simulated binary crossover (0.9, eta 15), polynomial mutation (0.9
     per individual, 1/11 per gene, eta 20), binary tournament, duplicates removed. Genes are decoded before evaluation;
-    a whole generation is one call of `evaluate`. Lanes without a solution count as strongly infeasible.
+    a whole generation is one call of `evaluate`. Lanes without a solution count as strongly infeasible. Where no design
+    meets the constraints the front is empty, with a message and, if `warn`, a UserWarning.
 
     Parameters
     ----------
@@ -225,10 +212,8 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
         designs evaluated: some hundreds or thousands.
     seed : int, optional
         Same seed, same bits. Default: the problem's; without one, each run differs.
-    objectives : dict of str to str, optional
-        Performance fields with "max" or "min".
-    constraints : sequence of (str, str, float), optional
-        Such as ("slope_capability_deg", ">=", 15).
+    objectives, constraints : optional
+        In place of the problem's, such as {"range_km": "max"} and [("slope_capability_deg", ">=", 15)].
     model : Model
         Scalars only.
     start : "light", Front or Design, optional
@@ -240,13 +225,6 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
         returned.
     bounds : dict of str to (float, float), optional
         Limits of some variables in place of those in DESIGN_SPACE.
-    warn : bool
-        Warn of an empty front; without, its `message` alone tells.
-
-    Returns
-    -------
-    Front
-        Empty, with a message and a UserWarning, where no design met the constraints.
 
     References
     ----------

@@ -16,25 +16,10 @@ DRAWS = 1024
 
 def uncertain_inputs(scenario: Scenario, *, draws: int = DRAWS, seed: int = 0, model: Model = Model(),
                      table: list | None = None) -> dict[str, np.ndarray]:
-    """Random soils and model coefficients from the table of uncertainties.
+    """Random soils and model coefficients around a scenario's and a model's, by field name; to pass to `replaced`.
 
-    Parameters
-    ----------
-    scenario : Scenario
-        Its soil is perturbed.
-    draws : int
-        1 or more: the first points of a scrambled Sobol sequence, its columns shuffled among the inputs.
-    seed : int
-        Same seed, same bits.
-    model : Model
-        Its coefficients are perturbed.
-    table : list of dict, optional
-        Rows like those of `data/uncertainties.csv`; see `inputs_at`.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Field names of Soil and Model with `draws` values each, to pass to `replaced`.
+    The first `draws` points of a scrambled Sobol sequence, its columns shuffled among the inputs, through `inputs_at`.
+    Same seed, same bits.
     """
     from scipy.stats import qmc
     draws = int(check("draws", draws, 1, whole=True, scalar=True))
@@ -57,19 +42,12 @@ def inputs_at(points: np.ndarray, scenario: Scenario, *, model: Model = Model(),
     ----------
     points : ndarray, shape (n, k)
         One column for each of `uncertain_names(table)`.
-    scenario : Scenario
-    model : Model
     table : list of dict, optional
         Rows with `name`; `kind`, "factor" (times the nominal value), "offset" (added to it) or "value" (in its place);
         `distribution`, "normal" or "lognormal" with `low` and `high` its 5 % and 95 % points, or "uniform" between
         them; `minimum` and `maximum`, where a tail is cut to stay physical. Rows of one name are a mixture with the
         shares `weight`; a row counts only `when` its condition holds, "from=35" or "below=35" of the nominal value, or
         "kernel=paper" of the model.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Values of shape (n,), by name.
     """
     nominal, changes = {**model.numbers(), **scenario.soil.numbers()}, {}
     table = catalog.rows("uncertainties.csv") if table is None else table
@@ -124,9 +102,6 @@ def interval_coverage(*, draws: int = DRAWS, seed: int = 0, level: float = 0.9, 
 
     Parameters
     ----------
-    draws, seed : int
-    level : float
-        Probability that an interval should hold, 0 to 1.
     spread : float, optional
         Standard deviation of the logarithm of the shear scale, in place of that of `data/uncertainties.csv`.
     experiments : sequence of str

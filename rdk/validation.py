@@ -12,7 +12,7 @@ import pandas as pd
 from . import catalog, power
 from ._fields import check
 from .design import Model
-from .mass import mass_breakdown
+from .mass import MassBreakdown, mass_breakdown
 from .mission import MASS_COEFFICIENTS, evaluate
 from .terramechanics import OPTIONS, Soil, Wheel, wheel_forces
 
@@ -42,10 +42,7 @@ EXPERIMENTS = {"ding": "ding-2011", "hurrell": "hurrell-2025", "wang": "wang-han
 def single_wheel_conditions(points: pd.DataFrame | None = None) -> tuple[Wheel, Soil, np.ndarray, np.ndarray]:
     """Wheel, soil, load (N) and slip of single-wheel tests, one lane a row, ready for `wheel_forces(*conditions)`.
 
-    Parameters
-    ----------
-    points : pandas.DataFrame, optional
-        Rows of `single_wheel.csv` (all of them by default) or of `single_wheel_more.csv`, which bring their soil.
+    Rows of `single_wheel.csv` (all of them by default) or of `single_wheel_more.csv`, which bring their soil.
     """
     points = catalog.table("single_wheel.csv") if points is None else points
     wheel = Wheel(points.wheel_radius_mm / 1000, points.wheel_width_mm / 1000, points.grouser_height_mm / 1000,
@@ -66,21 +63,11 @@ def _forces(conditions, options):
 
 
 def single_wheel(points: pd.DataFrame | None = None, **options) -> pd.DataFrame:
-    """Model against measurement at every point of the single-wheel tests, by one call of `wheel_forces`.
+    """Model against measurement at every point of the single-wheel tests, with the options of `wheel_forces`.
 
-    Parameters
-    ----------
-    points : pandas.DataFrame, optional
-        As in `single_wheel_conditions`.
-    **options
-        Of `wheel_forces`, such as `kernel` or `shear_scale`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a point: experiment, wheel, soil, vertical_load_n, slip, and for each of drawbar_pull_n, sinkage_mm and
-        torque_nm the measured value, the model's (`model_...`) and the signed error in percent (`..._error_pct`; NaN
-        where nothing, or zero, was measured).
+    One row a point: experiment, wheel, soil, vertical_load_n, slip, and for each of drawbar_pull_n, sinkage_mm and
+    torque_nm the measured value, the model's (`model_...`) and the signed error in percent (`..._error_pct`; NaN where
+    nothing, or zero, was measured).
     """
     points = catalog.table("single_wheel.csv") if points is None else points
     model = _forces(single_wheel_conditions(points), options)
@@ -174,14 +161,6 @@ def bootstrap_medians(reading_error_n: float = 0.5, reading_error_m: float = 1e-
     ----------
     reading_error_n, reading_error_m, reading_error_nm : float
         Standard deviation of the reading of drawbar pull (N), sinkage (m) and torque (N m), zero or more.
-    resample_points : bool
-        Draw curves and their points with replacement as well.
-    samples : int
-        How many, 1 or more.
-    seed : int, optional
-        Same seed, same table.
-    **options
-        Of `wheel_forces`.
 
     Returns
     -------
@@ -238,28 +217,12 @@ def pull_shift(shear_scale=(0.70, 0.85, 1.15, 1.30), **options) -> pd.DataFrame:
 
 def load_transfer(design, scenario, *, height_to_wheelbase=0.4, slope_deg=25.0, slip=0.6,
                   model: Model = Model()) -> float | np.ndarray:
-    """Change of a rover's total pull when a slope shifts weight to the lower axle at fixed total mass.
+    """Change of a rover's total pull, in percent, when a slope shifts weight to the lower axle at fixed total mass.
 
     Axles are evenly spaced. On two axles the loads are w (1 +- 2 (h/L) tan(slope)) with w the mean wheel load, on
-    three w (1 +- 3 (h/L) tan(slope)) at the ends and w in the middle; all wheels turn at the same slip.
-
-    Parameters
-    ----------
-    design : Design
-    scenario : Scenario
-        Gives the soil and the payload.
-    height_to_wheelbase : float or ndarray
-        h / L, zero or more.
-    slope_deg : float or ndarray
-        0 to below 90 degrees.
-    slip : float or ndarray
-        Slip at which the pull is taken.
-    model : Model
-
-    Returns
-    -------
-    float or ndarray
-        In percent of the pull with equal loads; NaN where that is not positive or an axle lifts off.
+    three w (1 +- 3 (h/L) tan(slope)) at the ends and w in the middle; all wheels turn at the same slip. NaN where the
+    pull with equal loads is not positive or an axle lifts off. The scenario gives soil and payload; the slope is 0 to
+    below 90 degrees.
     """
     ratio = check("height_to_wheelbase", height_to_wheelbase, 0)
     slope = np.radians(check("slope_deg", slope_deg, 0, below=90))
@@ -280,8 +243,7 @@ def load_transfer(design, scenario, *, height_to_wheelbase=0.4, slope_deg=25.0, 
 
 # ---- masses ---------------------------------------------------------------------------------------------------
 
-MASS_ITEMS = ("chassis_kg", "wheels_kg", "motors_kg", "solar_array_kg", "battery_kg", "avionics_kg", "linkage_kg",
-              "harness_kg", "thermal_control_kg", "growth_kg", "payload_kg")
+MASS_ITEMS = tuple(f.name for f in dataclasses.fields(MassBreakdown) if f.name != "total_kg")
 
 
 def anchor_torque_nm(published_mass_kg, wheel_count, wheel_radius_m, gravity_m_s2=Model.gravity_m_s2):
@@ -385,13 +347,10 @@ def flown_rovers() -> pd.DataFrame:
     Pragyan and leaves it out for Yutu-2. The enclosure (area, absorptivity, heaters, limits) is that of `flown.csv`,
     largely imputed. The range stops at the scenario's traverse limit; `unlimited_range_km` lifts that limit.
 
-    Returns
-    -------
-    pandas.DataFrame
-        One row a rover: rover; published_peak_w with its band published_low_w, published_high_w; peak_w (no optical
-        loss), clean_peak_w and its sweep over cell efficiency, clean_peak_low_w and clean_peak_high_w;
-        clean_error_pct; implied_derate (published / peak_w); hot_temperature_c, cold_temperature_c,
-        survives (model), survived (record); range_m, published_traverse_m, unlimited_range_km.
+    One row a rover: rover; published_peak_w with its band published_low_w, published_high_w; peak_w (no optical loss),
+    clean_peak_w and its sweep over cell efficiency, clean_peak_low_w and clean_peak_high_w; clean_error_pct;
+    implied_derate (published / peak_w); hot_temperature_c, cold_temperature_c, survives (model), survived (record);
+    range_m, published_traverse_m, unlimited_range_km.
     """
     flown = catalog.table("flown.csv")
     rows = []

@@ -79,5 +79,5 @@ sys.modules["rdk"] = package                             # the package without i
 import rdk.{module}
 print(sorted(name for name in sys.modules if name.startswith("rdk.")))""")
         private = {f"rdk.{name}" for name in ("_fields", "_contact", "_arc", "_roots")}
-        above = {"rdk.power"} if module == "sky" else private
+        above = private | ({"rdk.power"} if module == "sky" else set())
         assert set(eval(found)) <= {f"rdk.{module}"} | above, module
