@@ -19,7 +19,7 @@ import pytest
 import rdk
 from rdk import catalog, explain, pictures
 from rdk.design import Problem
-from rdk.explorer import Explorer, answers
+from rdk.explorer import Explorer, answers, page
 from rdk.explorer import app as explorer_module
 from rdk.explorer.inputs import DESIGN, MISSION, NUMBERS, OWN, SCRIPTS, SOIL, VIEWS
 from rdk.explorer.worker import Refresher
@@ -986,3 +986,11 @@ def test_a_sweep_draws_a_cliff_as_one(explorer):
     points = np.array(re.findall(r"[ML]([\d.]+) ([\d.]+)", line), float)
     steepest = np.abs(np.diff(points[:, 1])).argmax()
     assert np.diff(points[steepest:steepest + 2, 0]) < 2 and "cannot drive" in explorer._picture
+
+
+def test_styles_and_script_are_whole():
+    for text in page.STYLE, page.APP, page.SCRIPT:
+        bare = re.sub(r"'[^'\n]*'|\"[^\"\n]*\"|/\*.*?\*/", "", text, flags=re.S)
+        for left, right in ("{", "}"), ("(", ")"), ("[", "]"):
+            assert bare.count(left) == bare.count(right) > 0 or left == "[" and right not in bare
+        assert "{ {" not in re.sub(r"\s+", " ", bare) and max(map(len, text.splitlines())) <= 120
