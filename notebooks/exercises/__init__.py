@@ -35,11 +35,11 @@ def check(number, answer):
 
     Examples
     --------
-    >>> check("12.1", 0.06)
+    >>> check("16.1", 0.06)
     Not yet. A rigid chassis does not climb an obstacle as high as its wheel's radius.
-    >>> bool(check("12.1", 0.12))
+    >>> bool(check("16.1", 0.12))
     True
-    >>> check("12.1", "0.12 m")
+    >>> check("16.1", "0.12 m")
     This exercise asks for one number; you gave '0.12 m'.
     """
     if str(number) not in EXERCISES:
