@@ -134,7 +134,8 @@ def test_a_skyline_is_a_value():
 
 @pytest.mark.parametrize("azimuth, elevation, words", [
     ([0], [0], "two values"), ([0, 90], [0], "of one length"), ([0, 90, 80], [0, 0, 0], "must rise"),
-    ([0, 360], [0, 0], "within one turn"), ([0, 90], [0, 91], "-90 to 90; got 91"), ([0, 90], [0, np.nan], "got nan")])
+    ([0, 360], [0, 0], "within one turn"), ([0, 90], [0, 91], "at least -90 and at most 90 and finite; got 91"),
+    ([0, 90], [0, np.nan], "got nan")])
 def test_bad_skylines_are_refused(azimuth, elevation, words):
     with pytest.raises(ValueError, match=words):
         Skyline(azimuth, elevation)
