@@ -128,7 +128,8 @@ def wheel_in_soil():
 def single_wheel_rig():
     """A test bed for one wheel, with what is set and what is measured."""
     figure, (ax,) = _sheet(8.6, 3.7, (-3.2, 11.2, -1.6, 4.6))
-    ax.fill_between([-1, 9], -1.3, 0, color=SOIL, lw=0)
+    ax.fill_between([-1, 3.1, 3.6, 9], -1.3, [-0.25, -0.25, 0, 0], color=SOIL, lw=0)
+    ax.plot([-1, 3.6], [0, 0], color=GREY, lw=1, linestyle="--")     # the surface before the wheel came
     ax.plot([-1, -1, 9, 9], [0.5, -1.3, -1.3, 0.5], color=BLACK, lw=1.8)
     ax.plot([-1, 3.1], [-0.25, -0.25], [3.6, 9], [0, 0], color=BLACK, lw=1)
     _wheel(ax, (3.2, 0.85), 1.1, height=0.1)
