@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import rdk
-from rdk import catalog, sampling, studies
+from rdk import catalog, sampling
 from rdk import tradespace as ts
 
 MARE = rdk.scenario("equatorial_mare_traverse")
@@ -350,11 +350,12 @@ def test_a_search_that_meets_nothing_ends():
     assert len(front) == 0 and 20 < len(front.objective_history) < 200
 
 
-def test_a_converged_search_can_be_stopped_and_kept(tmp_path):
+def test_a_converged_search_can_be_stopped_and_be_one_of_many():
     stopped = converged(on_generation=lambda progress: progress.generation == 3)
     assert stopped.message.startswith("stopped after generation 3") and len(stopped.history) == 3
-    few = dict(seeds=[3], population=20, start="light", generations="converged", folder=tmp_path)
-    assert_same_study(rdk.fronts([HIGHLAND], **few), rdk.fronts([HIGHLAND], **few))
+    few = dict(population=20, start="light", generations="converged")
+    (front,) = rdk.fronts([HIGHLAND], seeds=[3], **few).values()
+    assert_same_bits(front, rdk.pareto_front(HIGHLAND, seed=3, **few))
 
 
 def test_a_front_is_kept_in_a_file_with_all_that_made_it(small, tmp_path):
@@ -591,7 +592,7 @@ def serial():
 
 
 def assert_same_study(one, other):
-    assert [case.label for case in one] == [case.label for case in other]
+    assert [settings(case) for case in one] == [settings(case) for case in other]
     for a, b in zip(one.values(), other.values()):
         assert_same_bits(a, b)
 
@@ -624,9 +625,8 @@ def test_a_dask_cluster_gives_the_same_bits(serial, tmp_path):
     distributed = pytest.importorskip("distributed")
     options = dict(n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=tmp_path)
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
-        found = rdk.fronts(SCENARIOS, **TINY, executor=client.get_executor(), folder=tmp_path / "fronts")
+        found = rdk.fronts(SCENARIOS, **TINY, executor=client.get_executor())
     assert_same_study(serial, found)
-    assert len(list((tmp_path / "fronts").glob("*.json"))) == 8
 
 
 def test_defaults_are_each_scenarios_seed_and_obstacles_reach_the_search():
@@ -646,47 +646,6 @@ def test_an_empty_front_in_a_study_is_a_message_and_no_warning():
     assert len(front) == 0 and "range_km >= 81" in front.message
 
 
-def test_progress_of_a_study(serial):
-    seen = []
-    found = rdk.fronts(SCENARIOS, **TINY, on_front=lambda *progress: seen.append(progress))
-    assert [s[:2] for s in seen] == [(i, 8) for i in range(1, 9)]
-    assert [s[2] for s in seen] == list(found) and [s[3] for s in seen] == list(found.values())
-
-
-@pytest.fixture
-def searches(monkeypatch):
-    """Seeds of the fronts that a study computes."""
-    seen, search = [], studies.pareto_front
-
-    def counted(scenario, **options):
-        seen.append((scenario.name, options["seed"], options["model"].shear_scale))
-        return search(scenario, **options)
-
-    monkeypatch.setattr(studies, "pareto_front", counted)
-    return seen
-
-
-@pytest.mark.parametrize("parallel", [False, True])
-def test_an_interrupted_study_keeps_what_it_has_and_resumes(serial, tmp_path, searches, parallel):
-    def interrupt(finished, total, case, front):
-        if finished == 3:
-            raise KeyboardInterrupt
-
-    with ThreadPoolExecutor(1) as pool, pytest.raises(KeyboardInterrupt):
-        rdk.fronts(SCENARIOS, **TINY, folder=tmp_path, on_front=interrupt, executor=pool if parallel else None)
-    kept = sorted(path.name for path in tmp_path.iterdir())
-    assert len(kept) == 3 and all(name.endswith(".json") for name in kept)
-    assert len(searches) <= 5                                   # an interrupted pool starts nothing more
-    searches.clear()
-    seen = []
-    resumed = rdk.fronts(SCENARIOS, **TINY, folder=tmp_path, on_front=lambda *p: seen.append(p[0]))
-    assert_same_study(serial, resumed)
-    assert len(searches) == 5 and seen == list(range(1, 9))
-    searches.clear()
-    assert_same_study(serial, rdk.fronts(SCENARIOS, **TINY, folder=tmp_path))
-    assert not searches
-
-
 DAMAGES = {
     "cut off": lambda text: text[:len(text) // 2],
     "empty": lambda text: "",
@@ -700,74 +659,41 @@ DAMAGES = {
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
-def test_a_damaged_file_is_computed_anew(tmp_path, searches, damage):
-    options = dict(population=8, generations=2, seeds=[1, 2], folder=tmp_path)
-    found = rdk.fronts([MARE], **options)
-    first = tmp_path / f"{next(iter(found)).label}.json"
-    sound = first.read_text(encoding="utf-8")
-    first.write_text(DAMAGES[damage](sound), encoding="utf-8")
-    assert first.read_text(encoding="utf-8") != sound
-    searches.clear()
-    with pytest.warns(UserWarning, match=f"{first.name} in .* is damaged and computed anew"):
-        again = rdk.fronts([MARE], **options)
-    assert [seed for _, seed, _ in searches] == [1]
-    assert_same_study(found, again)
-    assert first.read_text(encoding="utf-8") == sound
+def test_a_damaged_file_is_refused(tmp_path, serial, damage):
+    path = tmp_path / "front.json"
+    next(iter(serial.values())).save(path)
+    sound = path.read_text(encoding="utf-8")
+    path.write_text(DAMAGES[damage](sound), encoding="utf-8")
+    assert path.read_text(encoding="utf-8") != sound
+    with pytest.raises(ValueError, match="front.json holds no sound front"):
+        ts.Front.load(path)
 
 
 def test_bytes_that_are_no_text_are_damage_too(tmp_path):
-    options = dict(population=4, generations=1, folder=tmp_path)
-    (case,) = rdk.fronts([MARE], **options)
-    (tmp_path / f"{case.label}.json").write_bytes(b"\xff\xfe\x00")
-    with pytest.warns(UserWarning, match="damaged"):
-        rdk.fronts([MARE], **options)
+    path = tmp_path / "front.json"
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ValueError, match="holds no sound front"):
+        ts.Front.load(path)
 
 
-def test_a_file_is_complete_or_absent(tmp_path, monkeypatch):
+def test_a_file_is_complete_or_absent(tmp_path, serial, monkeypatch):
     def full(*args):
         raise OSError("no space left on device")
 
-    options = dict(population=4, generations=1, folder=tmp_path)
+    front, path = next(iter(serial.values())), tmp_path / "front.json"
     with monkeypatch.context() as broken:
         broken.setattr(ts.os, "replace", full)
         with pytest.raises(OSError, match="no space"):
-            rdk.fronts([MARE], **options)
-    assert not list(tmp_path.glob("*.json"))
-    rdk.fronts([MARE], **options)
-    assert len(list(tmp_path.glob("*.json"))) == 1
+            front.save(path)
+    assert not path.exists()
+    front.save(path)
+    assert_same_bits(front, ts.Front.load(path))
 
 
-def test_every_setting_has_a_file_of_its_own_and_equal_settings_share_one():
-    nominal = studies.Case(MARE, 1, 1.0, 0.0, 8, 2, None, rdk.Model())
-
-    def label(scenario=MARE, **changed):
-        return replace(nominal, scenario=scenario, **changed).label
-
-    others = [label(replace(MARE, slope_deg=15.0000001)), label(replace(MARE, soil=rdk.soil("apollo-loose"))),
-              label(replace(MARE, problem=HIGHLAND.problem)), label(model=rdk.Model(dust_factor=0.8)),
-              label(seed=2), label(shear_scale=0.7), label(obstacle_height_m=0.1), label(population=9),
-              label(generations=3), label(generations="converged"), label(start="light")]
-    assert len({label(), *others}) == 12
-    assert label() == label(rdk.scenario(MARE.name))
-
-
-def test_numpy_numbers_and_iterators_name_the_same_files(tmp_path, searches):
-    rdk.fronts([MARE], population=4, generations=1, seeds=[1, 2], shear_scales=[0.85], folder=tmp_path)
-    searches.clear()
-    rdk.fronts(iter([MARE]), population=4, generations=1, seeds=np.arange(1, 3), shear_scales=np.array([0.85]),
-              folder=tmp_path)
-    assert not searches and len(list(tmp_path.iterdir())) == 2
-
-
-@pytest.mark.parametrize("name, start", [("mare / flat: 5°?", "mare-flat-5"), ("long " * 60, "long-long"),
-                                         ("月面" * 200, "-"), ("", "_seed"), ("..", "..")])
-def test_a_scenario_may_have_any_name(tmp_path, name, start):
-    folder = tmp_path / "deep" / "er"
-    few = dict(population=4, generations=1, folder=folder, seeds=[2**40], shear_scales=[0.123456789])
-    found = rdk.fronts([replace(MARE, name=name)], **few)
-    (path,) = folder.iterdir()
-    assert path.name.startswith(start) and path.suffix == ".json" and len(path.name.encode()) < 200
-    assert_same_study(found, rdk.fronts([replace(MARE, name=name)], **few))
+def test_numpy_numbers_and_iterators_give_the_same_cases():
+    few = dict(population=4, generations=1)
+    plain = rdk.fronts([MARE], **few, seeds=[1, 2], shear_scales=[0.85])
+    assert_same_study(plain, rdk.fronts(iter([MARE]), **few, seeds=np.arange(1, 3), shear_scales=np.array([0.85])))
 
 
 @pytest.mark.parametrize("changed, words", [
