@@ -12,7 +12,7 @@ import numpy as np
 
 from ._fields import Record, described, number, together
 from .sky import Skyline, julian_date
-from .terramechanics import TRANSITIONS, Soil, Wheel
+from .terramechanics import KernelOptions, Soil, Wheel
 
 
 class Variable(NamedTuple):
@@ -126,22 +126,15 @@ class Scenario(Record):
 
 
 @dataclass(frozen=True)
-class Model(Record):
+class Model(KernelOptions):
     """Every coefficient of the models, with the paper's values as defaults; each a number or an array.
 
-    `data/constants.csv` gives unit, origin and source of each. Pass a changed copy to `evaluate`:
-    `evaluate(design, scenario, model=Model(drivetrain_efficiency=0.7))`. `kernel` is "paper" or "imposed-arc";
-    a transition coefficient of None is the kernel's own.
+    `data/constants.csv` gives unit, origin and source of each, those of `terramechanics.KernelOptions` included. Pass a
+    changed copy to `evaluate`: `evaluate(design, scenario, model=Model(drivetrain_efficiency=0.7))`.
     """
     example = "rdk.Model()"
 
     # terramechanics
-    kernel: str = "paper"
-    transition_c1: float | None = number(above=0, maximum=1, default=None, optional=True)
-    transition_c2: float | None = number(0, 1, default=None, optional=True)
-    grouser_lift_cap: float = number(0, default=0.6)
-    shear_scale: float = number(above=0, default=1.0)
-    sinkage_scale: float = number(above=0, default=1.0)
     slip_min: float = number(-1, 1, default=-0.9)
     slip_max: float = number(-1, below=1, default=0.95)
     slope_capability_slip: float = number(-1, 1, default=0.6)
@@ -199,23 +192,11 @@ class Model(Record):
     operating_temperature_max_c: float = number(default=50.0)
 
     def __post_init__(self):
-        if self.kernel not in TRANSITIONS:
-            raise ValueError(f"kernel must be one of {', '.join(map(repr, TRANSITIONS))}; got {self.kernel!r}")
         super().__post_init__()
-        c1, c2 = self.transition
-        if np.any(np.asarray(c1) + c2 > 1):
-            raise ValueError(f"transition_c1 + transition_c2 must be at most 1; got {c1} + {c2}")
         if np.any(np.asarray(self.slip_min) >= self.slip_max):
             raise ValueError(f"slip_min must be below slip_max; got {self.slip_min} and {self.slip_max}")
         if np.any(np.asarray(self.enclosure_area_base_m2) + self.enclosure_area_coefficient_m2 <= 0):
             raise ValueError("enclosure_area_base_m2 and enclosure_area_coefficient_m2 must not both be 0")
-
-    @property
-    def transition(self):
-        """The transition coefficients c_1 and c_2 in use: the kernel's own where none is given."""
-        own = TRANSITIONS[self.kernel]
-        return (own[0] if self.transition_c1 is None else self.transition_c1,
-                own[1] if self.transition_c2 is None else self.transition_c2)
 
     @classmethod
     def engineering(cls, **changes):

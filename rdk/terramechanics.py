@@ -17,8 +17,8 @@ fall back on; a lane leaves the batch as soon as it has converged.
 Arrays broadcast; a float comes back where every input is one. Inputs out of range, not finite or of lengths that
 disagree raise a ValueError.
 """
-from dataclasses import dataclass
-from typing import NamedTuple, TypedDict, Unpack
+from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -56,39 +56,44 @@ class Wheel(Record):
     grouser_count: int = number(0, whole=True, default=0, doc="N_g.")
 
 
-class KernelOptions(TypedDict, total=False):
-    """The options that every solver here takes by keyword: how the soil answers.
+@dataclass(frozen=True)
+class KernelOptions(Record):
+    """The options that every solver here takes by keyword, and part of `Model`: how the soil answers.
 
-    Parameters
-    ----------
-    kernel : str
-        "paper" (default): the entry angle is the one whose stresses carry the load. "imposed-arc": static sinkage and a
-        factor for slip fix the entry angle, and the load fixes how hard the arc presses. Its sinkage errs half as much
-        on the measured wheels, its pull does not err less: a second opinion. Smooth wheels above slip 0.6 sink too far
-        in it; at slip near 0 its stress level is near 2, since a rolling wheel's arc has one side and a static one two;
-        where cohesion alone more than carries the load the level is negative.
-    transition_c1, transition_c2 : float or ndarray
-        theta_m = (c_1 + c_2 |s|) theta_1 (Wong & Reece 1967). None, the default, is the kernel's own: 0.4 and 0.2, or
-        0.18 and 0.32 (their loose sand).
-    grouser_lift_cap : float or ndarray
-        Largest relative gain in shear by grousers, 0.6 by default.
-    shear_scale, sinkage_scale : float or ndarray
-        1 by default. Multiply the shear stress (the paper's robustness study) and the sinkage that is reported, which
-        leaves the forces as they are.
+    "paper": the entry angle is the one whose stresses carry the load. "imposed-arc": static sinkage and a factor for
+    slip fix the entry angle, and the load fixes how hard the arc presses. Its sinkage errs half as much on the measured
+    wheels, its pull does not err less: a second opinion. Smooth wheels above slip 0.6 sink too far in it; near
+    slip 0 its stress level is near 2, since a rolling wheel's arc has one side and a static one two; where cohesion
+    alone more than carries the load the level is negative.
 
-    References
-    ----------
     Wong & Reece (1967), doi:10.1016/0022-4898(67)90105-X; Yoshida et al. (2003); Lyasko (2010).
     """
-    kernel: str
-    transition_c1: ArrayLike | None
-    transition_c2: ArrayLike | None
-    grouser_lift_cap: ArrayLike
-    shear_scale: ArrayLike
-    sinkage_scale: ArrayLike
+    kernel: str = described('"paper" or "imposed-arc".', default="paper")
+    transition_c1: float | None = number(
+        above=0, maximum=1, default=None, optional=True, doc="theta_m = (c_1 + c_2 |s|) theta_1. None is the kernel's "
+        "own: 0.4 in the paper's, 0.18 in the other (loose sand).")
+    transition_c2: float | None = number(0, 1, default=None, optional=True, doc="None is 0.2 and 0.32.")
+    grouser_lift_cap: float = number(0, default=0.6, doc="Largest relative gain in shear by grousers.")
+    shear_scale: float = number(above=0, default=1.0, doc="Multiplies the shear stress: the paper's robustness study.")
+    sinkage_scale: float = number(above=0, default=1.0, doc="Multiplies the sinkage reported; the forces stay.")
+
+    def __post_init__(self):
+        if self.kernel not in TRANSITIONS:
+            raise unknown("unknown kernel", self.kernel, list(TRANSITIONS))
+        super().__post_init__()
+        c1, c2 = self.transition
+        if np.any(np.asarray(c1) + c2 > 1):
+            raise ValueError(f"transition_c1 + transition_c2 must be at most 1; got {c1} + {c2}")
+
+    @property
+    def transition(self):
+        """The transition coefficients c_1 and c_2 in use: the kernel's own where none is given."""
+        own = TRANSITIONS[self.kernel]
+        return (own[0] if self.transition_c1 is None else self.transition_c1,
+                own[1] if self.transition_c2 is None else self.transition_c2)
 
 
-OPTIONS = tuple(KernelOptions.__annotations__)           # fields of `Model`, too
+OPTIONS = tuple(f.name for f in fields(KernelOptions))
 
 
 class WheelForces(NamedTuple):
@@ -128,7 +133,7 @@ class ContactStress(NamedTuple):
 
 
 def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: ArrayLike,
-                 **options: Unpack[KernelOptions]) -> WheelForces:
+                 **options) -> WheelForces:
     """Drawbar pull, torque and sinkage of one wheel at given load and slip.
 
     The entry angle is the one at which the soil's vertical reaction equals the load (the paper's force balance);
@@ -161,7 +166,7 @@ def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: Arr
 
 def slip_balance(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, required_pull_n: ArrayLike, *,
                  slip_min: ArrayLike = SLIP_MIN, slip_max: ArrayLike = SLIP_MAX,
-                 **options: Unpack[KernelOptions]) -> SlipBalance:
+                 **options) -> SlipBalance:
     """The slip at which the drawbar pull equals the pull that the slope demands.
 
     Two equations, vertical load and pull (eq. slip-balance), in two unknowns, entry angle and slip. Where the pull
@@ -177,7 +182,7 @@ def slip_balance(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, required_
 
 def slope_capability(wheel: Wheel, soil: Soil, weight_n: ArrayLike, *, capability_slip: ArrayLike = CAPABILITY_SLIP,
                      capability_limit_deg: ArrayLike = CAPABILITY_LIMIT_DEG,
-                     **options: Unpack[KernelOptions]) -> float | np.ndarray:
+                     **options) -> float | np.ndarray:
     """Steepest slope that a wheel climbs at the slip of peak pull, in degrees; 0 where it is buried or cannot move.
 
     On a slope alpha a wheel of weight w (positive, not its normal component) carries w cos(alpha) and must pull
@@ -191,7 +196,7 @@ def slope_capability(wheel: Wheel, soil: Soil, weight_n: ArrayLike, *, capabilit
 def climb(wheel: Wheel, soil: Soil, weight_n: ArrayLike, slope_deg: ArrayLike, *, slip_min: ArrayLike = SLIP_MIN,
           slip_max: ArrayLike = SLIP_MAX, capability_slip: ArrayLike = CAPABILITY_SLIP,
           capability_limit_deg: ArrayLike = CAPABILITY_LIMIT_DEG,
-          **options: Unpack[KernelOptions]) -> tuple[SlipBalance, float | np.ndarray]:
+          **options) -> tuple[SlipBalance, float | np.ndarray]:
     """Slip balance on a slope and slope capability in one call: what a mission needs of the wheel.
 
     The balance is that of load weight * cos(slope) and required pull weight * sin(slope), eq. required-dp, with the
@@ -205,7 +210,7 @@ def climb(wheel: Wheel, soil: Soil, weight_n: ArrayLike, slope_deg: ArrayLike, *
 
 
 def contact_stress(wheel: Wheel, soil: Soil, entry_angle_rad: ArrayLike, slip: ArrayLike, angle_rad: ArrayLike, *,
-                   stress_level: ArrayLike = 1.0, **options: Unpack[KernelOptions]) -> ContactStress:
+                   stress_level: ArrayLike = 1.0, **options) -> ContactStress:
     """Normal and shear stress under the wheel at given angles, from the paper's stress distribution.
 
     Parameters
@@ -279,28 +284,17 @@ def _reported(forces, options):
     return forces._replace(sinkage_m=sinkage if sinkage.ndim else float(sinkage))
 
 
-def patch_of(wheel, soil, *, kernel="paper", transition_c1=None, transition_c2=None, grouser_lift_cap=0.6,
-             shear_scale=1.0, sinkage_scale=1.0, **arrays):
-    """The kernel's module, the patch and the arrays as flat lanes, and the shape to give back."""
-    if kernel not in KERNELS:
-        raise unknown("unknown kernel", kernel, list(KERNELS))
-    c1, c2 = TRANSITIONS[kernel]
-    c1 = c1 if transition_c1 is None else check("transition_c1", transition_c1, 0, 1)
-    c2 = c2 if transition_c2 is None else check("transition_c2", transition_c2, 0, 1)
-    if np.any(np.asarray(c1) + c2 > 1) or np.any(np.asarray(c1) <= 0):
-        raise ValueError("transition_c1 must be above 0 and transition_c1 + transition_c2 at most 1; "
-                         f"got {c1} and {c2}")
-    options = dict(transition_c1=c1, transition_c2=c2, grouser_lift_cap=check("grouser_lift_cap", grouser_lift_cap, 0),
-                   shear_scale=check("shear_scale", shear_scale, above=0),
-                   sinkage_scale=check("sinkage_scale", sinkage_scale, above=0))
+def patch_of(wheel, soil, options, **arrays):
+    """The patch and the arrays as flat lanes, and the shape to give back."""
+    c1, c2 = options.transition
     shape = together(wheel=wheel.shape, soil=soil.shape,
-                     **{name: np.shape(value) for name, value in (options | arrays).items()})
+                     **{name: np.shape(value) for name, value in (options.numbers() | arrays).items()})
     r, n = np.asarray(wheel.radius_m), soil.sinkage_exponent
-    gamma = grouser_lift(wheel, options["grouser_lift_cap"]) * options["shear_scale"]
+    gamma = grouser_lift(wheel, options.grouser_lift_cap) * options.shear_scale
     rows = (r, wheel.width_m, _k_eff(wheel, soil) * r ** n, n, gamma * soil.cohesion_kpa * 1000,
             gamma * np.tan(np.radians(soil.friction_angle_deg)), np.asarray(soil.shear_modulus_mm) / 1000, c1, c2)
     lanes = np.stack([np.broadcast_to(row, shape).ravel() for row in (*rows, *arrays.values())])
-    return KERNELS[kernel], _contact.Patch(*lanes[:len(rows)]), lanes[len(rows):], shape
+    return _contact.Patch(*lanes[:len(rows)]), lanes[len(rows):], shape
 
 
 def _solve(solver, wheel, soil, options, **arrays):
@@ -308,8 +302,9 @@ def _solve(solver, wheel, soil, options, **arrays):
     for name in options:
         if name not in OPTIONS:
             raise TypeError(str(unknown("unexpected keyword argument", name, OPTIONS)))
-    module, patch, lanes, shape = patch_of(wheel, soil, **arrays, **options)
-    solve, count = solver if callable(solver) else getattr(module, solver), lanes.shape[1]
+    options = KernelOptions(**options)
+    patch, lanes, shape = patch_of(wheel, soil, options, **arrays)
+    solve, count = solver if callable(solver) else getattr(KERNELS[options.kernel], solver), lanes.shape[1]
     with np.errstate(all="ignore"):                      # a lane without a solution is NaN, not a warning
         if not count:                                    # nothing to solve: one lane of ones shows the kinds
             ones = np.ones((len(patch) + len(lanes), 1))

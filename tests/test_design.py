@@ -367,7 +367,7 @@ def test_names_are_text_in_a_table():
 def test_the_kernel_brings_its_own_transition():
     assert MODEL.transition == (0.4, 0.2) and rdk.Model(kernel="imposed-arc").transition == (0.18, 0.32)
     assert rdk.Model(kernel="imposed-arc", transition_c2=0.1).transition == (0.18, 0.1)
-    with pytest.raises(ValueError, match="kernel must be one of 'paper', 'imposed-arc'; got 'papers'"):
+    with pytest.raises(ValueError, match="unknown kernel 'papers'; nearest are paper"):
         rdk.Model(kernel="papers")
 
 
