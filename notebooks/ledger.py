@@ -219,21 +219,23 @@ def _hypervolume_ratio(searches):
 
 def _span(searches, mission, what, unit):
     columns = [f"{what}_{end}_{unit}" for end in ("min", "max")]
-    lows = searches.longer(SHORT[mission], columns[0])
-    return tuple(searches.statistics.loc[SHORT[mission], columns]), (
-        f"the low end is chance while the search is unfinished: {lows.min():.1f} and {lows.max():.1f} {unit} "
-        "in the two searches of 90 generations")
+    return tuple(searches.statistics.loc[SHORT[mission], columns]), lambda: (
+        "the low end is chance while the search is unfinished: {:.1f} and {:.1f} {} in the two searches of 90 "
+        "generations".format(*sorted(searches.longer(SHORT[mission], columns[0])), unit))
 
 
 def _highland_light(searches):
     row = searches.statistics.loc[SHORT["highland"]]
-    again = pareto_front(catalog.scenario(SHORT["highland"]), seed=int(row.seed), model=searches.model,
-                         **searches.size | {"generations": 5 * searches.size["generations"]})
-    mass, distance = again.performance.total_mass_kg, again.performance.range_km
-    return row.range_lightest_km, (
-        f"this front ends at {row.mass_min_kg:.1f} kg; after 300 generations it ends at "
-        f"{mass.min(initial=np.inf):.1f} kg, "
-        f"and designs of up to 8 kg reach {distance[mass <= 8].max(initial=0):.1f} km")
+
+    def why():
+        again = pareto_front(catalog.scenario(SHORT["highland"]), seed=int(row.seed), model=searches.model,
+                             **searches.size | {"generations": 5 * searches.size["generations"]})
+        mass, distance = again.performance.total_mass_kg, again.performance.range_km
+        return (f"this front ends at {row.mass_min_kg:.1f} kg; after 300 generations it ends at "
+                f"{mass.min(initial=np.inf):.1f} kg, and designs of up to 8 kg reach "
+                f"{distance[mass <= 8].max(initial=0):.1f} km")
+
+    return row.range_lightest_km, why
 
 
 def _highland_plateau(searches):
@@ -245,10 +247,9 @@ def _highland_plateau(searches):
 
 def _highland_slope(searches):
     ends = ["slope_min_deg", "slope_max_deg"]
-    one, other = zip(*(searches.longer(SHORT["highland"], end) for end in ends))
-    return tuple(searches.statistics.loc[SHORT["highland"], ends]), (
-        f"no objective of this front; {one[0]:.1f}..{one[1]:.1f} and {other[0]:.1f}..{other[1]:.1f} deg in the two "
-        "searches of 90 generations")
+    return tuple(searches.statistics.loc[SHORT["highland"], ends]), lambda: (
+        "no objective of this front; {0[0]:.1f}..{1[0]:.1f} and {0[1]:.1f}..{1[1]:.1f} deg in the two searches of 90 "
+        "generations".format(*(searches.longer(SHORT["highland"], end) for end in ends)))
 
 
 def _slope_ceiling(searches):
@@ -291,13 +292,16 @@ def _width_floor(searches):
 
 
 def _storage(searches, mission, column):
-    others = searches.longer(SHORT[mission], column)
-    note = f"{others.min():.3g} and {others.max():.3g} in the two searches of 90 generations"
-    if column == "battery_median_wh":
+    def why():
+        others = searches.longer(SHORT[mission], column)
+        note = f"{others.min():.3g} and {others.max():.3g} in the two searches of 90 generations"
+        if column != "battery_median_wh":
+            return note
         change = rules.swapped(searches.canonical[SHORT[mission]], battery_capacity_wh=5.0).range_change_km
-        note = (f"not settled by the objectives: {note}; with 5 Wh and the mass made up in the chassis the "
+        return (f"not settled by the objectives: {note}; with 5 Wh and the mass made up in the chassis the "
                 f"range of half the designs changes by less than {abs(change).median():.2f} km")
-    return searches.statistics.loc[SHORT[mission], column], note
+
+    return searches.statistics.loc[SHORT[mission], column], why
 
 
 # ---- robustness and architecture ------------------------------------------------------------------------------------
@@ -330,9 +334,9 @@ def _crossover(searches):
 # ---- cost -----------------------------------------------------------------------------------------------------------
 
 def _seconds(compute):
-    """Shortest of five timings."""
+    """Shortest of three timings."""
     times = []
-    for _ in range(5):
+    for _ in range(3):
         start = time.perf_counter()
         compute()
         times.append(time.perf_counter() - start)
@@ -399,7 +403,8 @@ COMPUTED = (  # id, function of `Searches`, its other arguments
 )
 ROWS = {id: (_look_up, *arguments) for id, *arguments in LOOKUPS} | {
     id: (function, *arguments) for id, function, *arguments in COMPUTED}
-"""How each row is computed, by its id: a function of `Searches` and its other arguments."""
+"""How each row is computed, by its id: a function of `Searches` and its other arguments; it returns our value, or that
+and a sentence, or that and a function that finds the sentence by a further search."""
 
 _BOUND = re.compile(r"(>=|<=|<|>)?\s*(-?[\d.]+?)(?:\.\.(-?[\d.]+))?$")
 _COMPARE = {">=": np.greater_equal, "<=": np.less_equal, "<": np.less, ">": np.greater}
@@ -441,7 +446,7 @@ def accepts(accept, value):
     return bool(np.all(inside))
 
 
-def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None, sections=None):
+def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None, sections=None, reasons=True):
     """Every number that the paper reports beside ours, computed afresh.
 
     Parameters
@@ -453,6 +458,8 @@ def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None, s
         The studies behind the rows: with an executor, other seeds, another model, or computed already.
     sections : sequence of str, optional
         Only rows of these sections of the paper.
+    reasons : bool
+        Without, searches that serve only a row's `why` are left out, and that `why` is empty.
 
     Returns
     -------
@@ -476,7 +483,10 @@ def paper_ledger(kinds=("deterministic", "stochastic", "cost"), searches=None, s
     for target in targets.itertuples():
         function, *arguments = ROWS[target.id]
         found = function(searches, *arguments)
-        ours, why = found if isinstance(found, tuple) and isinstance(found[-1], str) else (found, "")
+        explained = isinstance(found, tuple) and (callable(found[-1]) or isinstance(found[-1], str))
+        ours, why = found if explained else (found, "")
+        if callable(why):
+            why = why() if reasons else ""
         rows.append(dict(id=target.id, section=target.paper_section, quantity=target.quantity,
                          paper=str(target.paper_value), ours=ours, agrees=accepts(str(target.accept), ours), why=why))
     return pd.DataFrame(rows).astype({"agrees": "boolean", "ours": object})

@@ -175,3 +175,11 @@ def test_seed_offset_moves_the_searches():
     recorder = Recorder()
     paper.Searches(recorder, seed_offset=100, population=4, generations=2).canonical      # noqa: B018
     assert sorted(case.seed for case in recorder.cases) == [112, 113, 114, 115]
+
+
+def test_without_reasons_only_the_rows_themselves_are_searched_for(small):
+    recorder = Recorder()
+    table = paper.paper_ledger(("stochastic",), small_searches(executor=recorder), ["Pareto fronts", "design rules"],
+                               reasons=False).set_index("id")
+    assert len(recorder.cases) == 4, "the canonical fronts, and not those of 90 generations"
+    assert table.why["front_mare_mass_kg"] == "" and list(table.ours) == list(small[0].ours[table.index])
