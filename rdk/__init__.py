@@ -18,8 +18,8 @@ _LAZY = {name: module for module, names in {
     "sampling": ("random_designs", "sweep", "Sweep", "intervals", "Intervals", "attribution", "Attribution"),
     "tradespace": ("pareto_front", "Front"), "studies": ("fronts",), "explorer": ("Explorer",),
     "report": ("write_report",), "sizing": ("size", "Sizing", "prudent_demands"),
-    None: ("explain", "explorer", "figures", "rediscovery", "registry", "report", "route", "rules", "sampling", "sizing",
-           "stability", "studies", "terrain", "tradespace", "validation")}.items() for name in names}
+    None: ("explain", "explorer", "figures", "rediscovery", "registry", "report", "route", "rules", "sampling",
+           "sizing", "stability", "studies", "terrain", "tradespace", "validation")}.items() for name in names}
 
 __all__ = [
     "DESIGN_SPACE", "Design", "Model", "Performance", "Problem", "Scenario", "Soil", "Wheel", "catalog", "evaluate",

@@ -177,7 +177,8 @@ def _march(lane, width, times, steps, exact, with_log, with_arrival):
     driven_h, mobility_h = duty * steps.sum(), duty * samples.sum()
     driving = np.asarray(duty)                           # duty of each step
     if throttled.any():
-        sunlit = _solar_duty(solar, base_load, mobility, duty)
+        # what the sun alone carries above avionics and payload
+        sunlit = np.clip((solar - base_load) / np.where(mobility > 0, mobility, np.inf), 0.0, duty)
         driving = duty - share * (duty - sunlit) if exact else np.where(share, sunlit, duty)
         lost = duty - driving
         driven_h, mobility_h = driven_h - steps @ lost, mobility_h - samples @ lost
@@ -228,11 +229,6 @@ def _arrival(limit_km, distance_km, speed_km_h, driving, times, steps):
     over = driven_h[last, column] - need_h
     rate = np.broadcast_to(driving, driven_h.shape)[last, column]
     return np.where(reached, times[last] - over / rate, np.inf)
-
-
-def _solar_duty(solar, base_load, mobility, duty):
-    """Duty that the sun alone carries above avionics and payload."""
-    return np.clip((solar - base_load) / np.where(mobility > 0, mobility, np.inf), 0.0, duty)
 
 
 def _above_rounding(power_w):

@@ -117,33 +117,24 @@ def rover_names() -> tuple[str, ...]:
 
 
 def soil(name: str) -> Soil:
-    """A catalogued Soil, one of `soil_names()`.
-
-    Examples
-    --------
-    >>> soil("apollo-loose").friction_angle_deg
-    30.0
-    """
+    """A catalogued Soil, one of `soil_names()`."""
     return _read(Soil, _pick("soils.csv", "soil", "soil", name), limits_of(Soil), "soils.csv", name, name=name)
 
 
 def scenario(name: str) -> Scenario:
-    """A catalogued Scenario, one of `scenario_names()`.
-
-    Its panel is tilted by min(80, |latitude|) degrees towards the noon sun.
-
-    Examples
-    --------
-    >>> scenario("polar_prospecting").panel_tilt_deg
-    80.0
-    """
+    """A catalogued Scenario, one of `scenario_names()`, its panel tilted towards the noon sun."""
     row = _pick("scenarios.csv", "scenario", "scenario", name)
     if row["soil"] not in soil_names():
         raise ValueError(f"scenarios.csv is damaged: row of {name!r}: no soil {row['soil']!r} in soils.csv")
     flat = _read(Scenario, row, _SCENARIO, "scenarios.csv", name, name=name, soil=soil(row["soil"]),
                  problem=problem(name))
-    return dataclasses.replace(flat, panel_tilt_deg=min(80.0, abs(flat.latitude_deg)),
-                               panel_azimuth_deg=0.0 if flat.latitude_deg < 0 else 180.0)
+    return at_latitude(flat, flat.latitude_deg)
+
+
+def at_latitude(scenario: Scenario, latitude_deg: float) -> Scenario:
+    """A scenario moved to a latitude, its panel tilted by min(80, |latitude|) degrees towards the noon sun."""
+    return dataclasses.replace(scenario, latitude_deg=latitude_deg, panel_tilt_deg=min(80.0, abs(latitude_deg)),
+                               panel_azimuth_deg=0.0 if latitude_deg < 0 else 180.0)
 
 
 def problem(name: str) -> Problem:
@@ -165,15 +156,7 @@ def problem(name: str) -> Problem:
 
 
 def rover(name: str) -> Design:
-    """The design of a published rover, one of `rover_names()`.
-
-    Fields that its sources leave open are imputed (see `data/rovers.csv`).
-
-    Examples
-    --------
-    >>> rover("Rashid-1").wheel_radius_m
-    0.1
-    """
+    """The design of a published rover, one of `rover_names()`; `data/rovers.csv` says what its sources leave open."""
     return _read(Design, rover_row(name), tuple(DESIGN_SPACE), "rovers.csv", name)
 
 

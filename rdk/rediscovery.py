@@ -11,7 +11,7 @@ from . import catalog
 from ._fields import check, unknown
 from .design import DESIGN_SPACE, Design, Model
 from .mission import evaluate, mass_of
-from .rules import fronts_at, place
+from .rules import place, searched
 from .sampling import random_designs
 from .tradespace import beaten, minimised
 
@@ -57,36 +57,26 @@ def rediscover(rovers: Iterable[str] = tuple(REDISCOVERED), *, population: int =
                seeds: Iterable[int] = range(5), executor=None) -> pd.DataFrame:
     """Distance of published rovers to the fronts of their missions, under a ceiling of 1.10 times their mass.
 
-    Parameters
-    ----------
-    generations : sequence of int
-        Where to look; the paper's figure is at 16.
-    seeds : sequence of int
-        One search a seed; the fronts are merged.
-    executor : concurrent.futures.Executor, optional
-        Runs the searches in parallel, with the same result.
+    One search a seed, run in parallel by an `executor` of concurrent.futures with the same result; the fronts are
+    merged. The paper's figure is at generation 16.
 
-    Returns
-    -------
-    pandas.DataFrame
-        One row a rover and generation: rover, scenario, in_class, generations, mass_kg, ceiling_kg, feasible
-        (the rover itself on that mission), front_designs, distance (to the nearest design of the merged
-        fronts), distance_worst_seed (to the nearest of the worst single search), dominated (some front design
-        is no worse in range, mass and slope capability and better in one), and `nearest`, the design.
+    One row a rover and generation: rover, scenario, in_class, generations, mass_kg, ceiling_kg, feasible (the rover
+    itself on that mission), front_designs, distance (to the nearest design of the merged fronts), distance_worst_seed
+    (to the nearest of the worst single search), dominated (some front design is no worse in range, mass and slope
+    capability and better in one), and `nearest`, the design.
     """
-    wanted = sorted({int(check("generations", g, 1, whole=True, scalar=True)) for g in generations})
     targets, seeds = [Target.of(name) for name in rovers], list(seeds)
-    jobs = [(target.scenario, wanted, dict(population=population, seed=seed, constraints=target.constraints))
-            for target in targets for seed in seeds]
-    searches = list((map if executor is None else executor.map)(fronts_at, *zip(*jobs)))
+    searches = searched([(target.scenario, dict(population=population, seed=seed, constraints=target.constraints))
+                         for target in targets for seed in seeds], generations, executor)
     return pd.DataFrame([
-        _found(target, generation, [fronts[g] for fronts in searches[i * len(seeds):(i + 1) * len(seeds)]])
-        for i, target in enumerate(targets) for g, generation in enumerate(wanted)])
+        _found(target, fronts) for i, target in enumerate(targets)
+        for fronts in zip(*searches[i * len(seeds):(i + 1) * len(seeds)])])
 
 
-def _found(target, generation, fronts):
+def _found(target, fronts):
     """The row of one rover at one generation."""
-    fronts, own_row = [front for front in fronts if len(front)], catalog.rover_row(target.name)
+    generation, own_row = len(fronts[0].objective_history), catalog.rover_row(target.name)
+    fronts = [front for front in fronts if len(front)]
     row = dict(rover=target.name, scenario=target.scenario.name, in_class=own_row["in_class"] == "True",
                generations=generation, mass_kg=target.performance.total_mass_kg, ceiling_kg=target.ceiling_kg,
                feasible=target.performance.feasible, front_designs=sum(map(len, fronts)), distance=np.nan,
@@ -105,16 +95,12 @@ def _found(target, generation, fronts):
 def baselines(found: pd.DataFrame, *, count: int = 20000, seed: int = 0) -> pd.DataFrame:
     """What distances chance gives, for the rovers of a rediscovery check: one row of `rediscover` a rover.
 
-    Its number of front designs sets how many chances chance gets, of `count` random designs.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a rover: rover, random_pair (mean distance of two random points), feasible_fraction (share of
-        random designs that are feasible on its mission), feasible_pair (mean distance of two of those),
-        centroid (distance of the rover to their centroid), nearest_feasible (mean distance of the nearest of
-        as many random feasible designs as the front has), nearest_capped and nearest_capped_low (the same
-        under the rover's mass ceiling, and its 5 % quantile), capped_designs (how many random designs met it).
+    Its number of front designs sets how many chances chance gets, of `count` random designs. One row a rover: rover,
+    random_pair (mean distance of two random points), feasible_fraction (share of random designs that are feasible on
+    its mission), feasible_pair (mean distance of two of those), centroid (distance of the rover to their centroid),
+    nearest_feasible (mean distance of the nearest of as many random feasible designs as the front has), nearest_capped
+    and nearest_capped_low (the same under the rover's mass ceiling, and its 5 % quantile), capped_designs (how many
+    random designs met it).
     """
     random, rows = np.random.default_rng(seed), []
     count = int(check("count", count, 100, whole=True, scalar=True))

@@ -83,10 +83,15 @@ def over_generations(scenarios: Iterable[Scenario], seeds: Iterable[int], genera
     `executor`, of concurrent.futures, runs the searches in parallel, with the same result. `options` are passed to
     `pareto_front`, such as `population`.
     """
+    jobs = [(scenario, dict(options, seed=seed)) for scenario in scenarios for seed in seeds]
+    return front_statistics(sum(searched(jobs, generations, executor), []))
+
+
+def searched(jobs: list, generations: Iterable[int], executor=None) -> list[list[Front]]:
+    """The fronts of each search, a scenario with options of `pareto_front`, at generations in rising order."""
     wanted = sorted({int(check("generations", g, 1, whole=True, scalar=True)) for g in generations})
-    jobs = [(scenario, wanted, dict(options, seed=seed)) for scenario in scenarios for seed in seeds]
-    searches = (map if executor is None else executor.map)(fronts_at, *zip(*jobs))
-    return front_statistics(front for fronts in searches for front in fronts)
+    run = map if executor is None else executor.map
+    return list(run(fronts_at, *zip(*((scenario, wanted, options) for scenario, options in jobs))))
 
 
 def fronts_at(scenario: Scenario, generations: list, options: dict) -> list[Front]:
@@ -175,10 +180,9 @@ def family(name: str, count: int, seed: int = 0) -> list[Scenario]:
     count = int(check("count", count, 1, whole=True, scalar=True))
     low, high = np.array([text.split("..") for text in ranges], float).T
     points = qmc.scale(qmc.LatinHypercube(3, rng=np.random.default_rng(seed)).random(count), low, high)
-    return [dataclasses.replace(
-        scenario, name=f"{name} {i}", latitude_deg=latitude, duration_earth_days=duration, slope_deg=slope,
-        panel_tilt_deg=min(80.0, abs(latitude)), panel_azimuth_deg=0.0 if latitude < 0 else 180.0)
-        for i, (latitude, duration, slope) in enumerate(points.tolist(), 1)]
+    return [dataclasses.replace(catalog.at_latitude(scenario, latitude), name=f"{name} {i}",
+                                duration_earth_days=duration, slope_deg=slope)
+            for i, (latitude, duration, slope) in enumerate(points.tolist(), 1)]
 
 
 # ---- what drives a result ----------------------------------------------------------------------------------
@@ -186,27 +190,14 @@ def family(name: str, count: int, seed: int = 0) -> list[Scenario]:
 def sobol(scenario: Scenario, *, metrics=("range_km", "total_mass_kg", "slope_capability_deg"),
           design: Design | None = None, count: int = 1024, seed: int = 0, bounds: dict | None = None,
           model: Model = Model()) -> pd.DataFrame:
-    """Sobol indices of metrics: the share of their variance that each input explains.
+    """Sobol indices of metrics: the share of their variance that each input explains, by scipy.stats.sobol_indices.
 
-    Over the design variables, uniform in the design space; or, when a single design is given, over the uncertain
-    inputs of `data/uncertainties.csv` for that design. All points are evaluated in one call.
+    Over the design variables, uniform in the design space or in narrower `bounds`; or, when a single design is given,
+    over the uncertain inputs of `data/uncertainties.csv` for that design. All count * (inputs + 2) points, with count a
+    power of 2, are evaluated in one call. Saltelli et al. (2010), doi:10.1016/j.cpc.2009.09.018.
 
-    Parameters
-    ----------
-    count : int
-        Size of the two base samples, a power of 2; the evaluation is of count * (inputs + 2) points.
-    bounds : dict of str to (float, float), optional
-        Narrower limits of design variables.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a metric and input: metric, input, first_order, total_order, and the 90 % bootstrap interval
-        of the total order, total_low and total_high.
-
-    References
-    ----------
-    Saltelli et al. (2010), doi:10.1016/j.cpc.2009.09.018, as implemented by scipy.stats.sobol_indices.
+    One row a metric and input: metric, input, first_order, total_order, and the 90 % bootstrap interval of the total
+    order, total_low and total_high.
     """
     from scipy.stats import qmc, sobol_indices
     count = int(check("count", count, 2, whole=True, scalar=True))

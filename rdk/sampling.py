@@ -47,11 +47,6 @@ def random_designs(count: int, seed: int | None = None, bounds: dict | None = No
     """Designs drawn uniformly from the design space; grouser counts whole, 4 or 6 wheels with equal chance.
 
     `bounds` has limits (low, high) of some variables in place of those in DESIGN_SPACE; same seed, same designs.
-
-    Examples
-    --------
-    >>> random_designs(3, seed=1).shape
-    (3,)
     """
     count = int(check("count", count, 1, whole=True, scalar=True))
     return decode(np.random.default_rng(seed).random((count, len(DESIGN_SPACE))), bounds)

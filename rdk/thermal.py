@@ -28,11 +28,6 @@ def node_temperature(heat_w: Real, area_m2: Real, sink_temperature_k: Real, *, e
 
     (T_sink^4 + Q / (eps sigma A))^(1/4), with Q the absorbed sunlight, dissipation and heaters, zero or more; the
     infrared of the surroundings is in their effective temperature.
-
-    Examples
-    --------
-    >>> f"{node_temperature(0.0, 0.1, 100.0):.2f} degC"
-    '-173.15 degC'
     """
     fourth_power = np.asarray(sink_temperature_k, float) ** 4 + heat_w / (emissivity * STEFAN_BOLTZMANN * area_m2)
     return np.sqrt(np.sqrt(fourth_power)) - ZERO_CELSIUS

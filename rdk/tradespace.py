@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import catalog
-from ._fields import Shown, check, unknown
+from ._fields import Shown, check, require, unknown
 from .design import DESIGN_SPACE, Design, Model, Problem, Scenario
 from .mission import Performance, evaluate
 from .sampling import METRICS, decode, demands, encode
@@ -164,8 +164,7 @@ def _gain(old, new, objectives, scenario):
 
 def posed(scenario: Scenario, objectives=None, constraints=None, seed=None) -> tuple[Scenario, Problem]:
     """The scenario and the Problem that a search uses: the scenario's own problem, with what the caller changes."""
-    if not isinstance(scenario, Scenario):
-        raise TypeError(f"scenario must be a Scenario, such as rdk.scenario('polar_prospecting'); got {scenario!r}")
+    require(scenario=(scenario, Scenario))
     if scenario.shape:
         raise ValueError(f"scenario must be a single mission for a search; got arrays of shape {scenario.shape}")
     problem = scenario.problem
@@ -348,8 +347,7 @@ def nsga2(scenario: Scenario, problem: Problem, population: int = 50, generation
     from pymoo.operators.survival.rank_and_crowding.metrics import get_crowding_function
     from pymoo.core.survival import Survival
     from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
-    if not isinstance(model, Model):
-        raise TypeError(f"model must be a Model; got {type(model).__name__}")
+    require(model=(model, Model))
     if model.shape:
         raise ValueError(f"model must hold single numbers for a search; got arrays of shape {model.shape}")
     Config.warnings["not_compiled"] = False

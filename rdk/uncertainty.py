@@ -100,18 +100,10 @@ def interval_coverage(*, draws: int = DRAWS, seed: int = 0, level: float = 0.9, 
     the soil of a lunar site comes on top of it. Its spread was set on these five experiments, each with the same
     weight: to judge it, set it without one of them and ask for that one.
 
-    Parameters
-    ----------
-    spread : float, optional
-        Standard deviation of the logarithm of the shear scale, in place of that of `data/uncertainties.csv`.
-    experiments : sequence of str
-        Tests of `single_wheel.csv` and `single_wheel_more.csv`; by default all.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a point of positive slip: experiment, wheel, slip, load_n, measured_n, nominal_n, low_n, high_n,
-        inside, and shear_scale, the factor with which the kernel meets the point.
+    `spread` is the standard deviation of the logarithm of the shear scale, by default that of `data/uncertainties.csv`;
+    `experiments` are tests of `single_wheel.csv` and `single_wheel_more.csv`, by default all. One row a point of
+    positive slip: experiment, wheel, slip, load_n, measured_n, nominal_n, low_n, high_n, inside, and shear_scale, the
+    factor with which the kernel meets the point.
     """
     import pandas as pd
     level = check("level", level, above=0, below=1, scalar=True)

@@ -11,7 +11,7 @@ import pandas as pd
 
 from . import catalog, power
 from ._fields import check
-from .design import Model
+from .design import DESIGN_SPACE, Model
 from .mass import MassBreakdown, mass_breakdown
 from .mission import MASS_COEFFICIENTS, evaluate
 from .terramechanics import OPTIONS, Soil, Wheel, wheel_forces
@@ -85,22 +85,14 @@ def _stem(quantity):
 
 
 def single_wheel_summary(points: pd.DataFrame | None = None, **options) -> pd.DataFrame:
-    """What the errors of the single-wheel tests come to, per experiment and quantity.
+    """What the errors of the single-wheel tests, as returned by `single_wheel`, come to, per experiment and quantity.
 
     The paper's medians are those of |error| in percent over all points of an experiment, both wheels together, the
     points at zero slip and of negative pull included: that choice reproduces its six figures.
 
-    Parameters
-    ----------
-    points : pandas.DataFrame, optional
-        As returned by `single_wheel`, or some of its rows; by default all of them, with these options.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row an experiment and quantity: points with an error, median_abs_error_pct, median_error_pct (signed),
-        over_predicted (how many points), largest_abs_error_pct, median_abs_error and its unit, and
-        median_abs_error_of_load_pct (pull only: error in percent of the load).
+    One row an experiment and quantity: points with an error, median_abs_error_pct, median_error_pct (signed),
+    over_predicted (how many points), largest_abs_error_pct, median_abs_error and its unit, and
+    median_abs_error_of_load_pct (pull only: error in percent of the load).
     """
     points = single_wheel(**options) if points is None else points
     rows = []
@@ -152,21 +144,14 @@ def bootstrap_medians(reading_error_n: float = 0.5, reading_error_m: float = 1e-
                       **options) -> pd.DataFrame:
     """What an error in reading the points off printed figures does to the medians of |error|.
 
-    Every measured value is read again `samples` times with a normal error; the model stays as it is. That is a
-    parametric bootstrap. With `resample_points`, each sample also draws what was measured: curves (a wheel each) of an
-    experiment with replacement, and points of a drawn curve with replacement, since points of one curve share its wheel
-    and its soil. An experiment of one or two curves shows little of what others would have given.
+    Every measured value is read again `samples` times with a normal error of the standard deviations given, zero or
+    more; the model stays as it is. That is a parametric bootstrap. With `resample_points`, each sample also draws what
+    was measured: curves (a wheel each) of an experiment with replacement, and points of a drawn curve with replacement,
+    since points of one curve share its wheel and its soil. An experiment of one or two curves shows little of what
+    others would have given.
 
-    Parameters
-    ----------
-    reading_error_n, reading_error_m, reading_error_nm : float
-        Standard deviation of the reading of drawbar pull (N), sinkage (m) and torque (N m), zero or more.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row an experiment and quantity: points, median_abs_error_pct as printed, and low_pct, median_pct, high_pct:
-        the 5, 50 and 95 % points of that median over the samples.
+    One row an experiment and quantity: points, median_abs_error_pct as printed, and low_pct, median_pct, high_pct: the
+    5, 50 and 95 % points of that median over the samples.
     """
     sigma = dict(zip(QUANTITIES, (check("reading_error_n", reading_error_n, 0, scalar=True),
                                   1000 * check("reading_error_m", reading_error_m, 0, scalar=True),
@@ -257,8 +242,7 @@ def _published(model):
     rovers = catalog.table("rovers.csv").query("use == 'mass check'").reset_index(drop=True)
     anchored = anchor_torque_nm(rovers.published_mass_kg, rovers.wheel_count, rovers.wheel_radius_m)
     rovers["peak_wheel_torque_nm"] = rovers.peak_wheel_torque_nm.fillna(anchored)
-    sizes = ("wheel_radius_m", "wheel_width_m", "grouser_height_m", "grouser_count", "wheel_count", "chassis_mass_kg",
-             "solar_area_m2", "battery_capacity_wh", "avionics_power_w", "peak_wheel_torque_nm", "payload_mass_kg")
+    sizes = [name for name in (*DESIGN_SPACE, "payload_mass_kg") if name != "wheelbase_m"]
     return rovers, mass_breakdown(**{name: rovers[name].to_numpy(float) for name in sizes},
                                   **{name: getattr(model, name) for name in MASS_COEFFICIENTS})
 
