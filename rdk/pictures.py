@@ -180,7 +180,7 @@ def log(result, scenario, soc_initial=1.0, size=SIZE, ghosts=()):
     power.line(days, start(log.solar_w, log.solar_w[0]), "c1")
     power.line(days, start(log.load_w, log.load_w[0]), "c3")
     peak = int(log.solar_w.argmax())
-    power.parts.append(text(min(max(power.x(days[peak]), 80), width - 110), power.y(log.solar_w[peak]) - 5, "sunlight",
+    power.parts.append(text(min(max(power.x(days[peak]), 130), width - 110), power.y(log.solar_w[peak]) - 5, "sunlight",
                             "s m f1 b"))
     power.parts.append(text(width - 57, power.y(log.load_w[-1]) + 4, "load", "s b"))
     charge.frame("Charge", "%", count=2)
@@ -366,13 +366,13 @@ def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
     axes = Axes((56, 26, width - 86, height - 44), (float(xs[0]), float(xs[-1])), (float(ys[0]), float(ys[-1])))
     low, high = span(grid, room=0)
     field, edges = contour_generator(xs, ys, np.where(np.isfinite(grid), grid, np.nan).T), np.linspace(low, high, 11)
-    edges[[0, -1]] += np.array([-1, 1]) * 1e-9 * max(abs(low), abs(high), 1)
+    outer = edges + np.r_[-1, np.zeros(9), 1] * 1e-9 * max(abs(low), abs(high), 1)
 
     def path(points, close=""):
         return "M" + "L".join(f"{a:.1f} {b:.1f}" for a, b in zip(axes.x(points[:, 0]), axes.y(points[:, 1]))) + close
 
-    for k, (a, b) in enumerate(zip(edges, edges[1:])):
-        polygons, offsets = field.filled(a, b)
+    for k, a in enumerate(edges[:-1]):
+        polygons, offsets = field.filled(outer[k], outer[k + 1])
         outlines = "".join(path(points[i:j], "Z") for points, starts in zip(polygons, offsets) for i,
                            j in zip(starts, starts[1:]))
         axes.parts.append(f'<path fill="{shade((k + 0.5) / 10)}" fill-rule="evenodd" d="{outlines}"/>')

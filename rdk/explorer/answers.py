@@ -101,7 +101,7 @@ def answer(design, scenario, result, binding, spans, before, model, old=False):
         asked = [limit for metric, _, limit in scenario.problem.constraints if (metric, limit) != ("range_km", 0.1)]
         odds = f"{'Meets all demands' if asked else 'Drives'} in {share:.0f} % of {DRAWS:,} draws."
     said = explain.levers(design, scenario, result, binding.key, model)
-    buttons = [(f"lever:{lever[0]}", "{1} +10 %: {2:+.2g} {3}".format(*lever).replace("-", "−")) for lever in said[:3]]
+    buttons = [(f"lever:{lever[0]}", "{1} +10 %: {2:+.2g} {3}".format(*lever)) for lever in said[:3] if lever[2] > 0]
     head = binding.sentence
     if buttons:
         head = binding.sentence.split(":")[0] + ". Try" if binding.key not in ("soil", "traction") else "Try"

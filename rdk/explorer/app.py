@@ -25,7 +25,7 @@ from ..sampling import intervals
 from ..sizing import size
 from ..tradespace import pareto_front
 from . import answers, page
-from .inputs import DESIGN, NUMBERS, START, place
+from .inputs import DESIGN, NUMBERS, START, label, place
 from .state import PINS, State, check_variable, plain
 from .worker import Refresher
 
@@ -223,26 +223,25 @@ class Explorer(State):
             see["verdict"].value, self._table = answers.answer(design, scenario, result, binding, self.intervals,
                                                                before, model, old=True)
             see["side"].value = rover_picture(design, result, scenario, width=290)
-            if view != "fleet":                          # it shows the intervals
-                self._show(now, design, scenario, model, result)
+            self._show(now, design, scenario, model, result, None)
             if not self._refresher.overtaken:            # intervals for the newest state alone
                 self.intervals = intervals(design, scenario, draws=answers.DRAWS, model=model)
                 see["verdict"].value, self._table = answers.answer(design, scenario, result, binding, self.intervals,
                                                                    before, model)
-                if view in ("fleet", "mass") or self._size[0] >= WIDE:
-                    self._show(now, design, scenario, model, result)
+                if view in ("fleet", "mass") or view == "log" and self._size[0] >= WIDE:     # they show intervals
+                    self._show(now, design, scenario, model, result, self.intervals)
                 self._show_tray(scenario, model, result)
         except Exception as error:                       # anything at all: the app must go on and say what happened
             self.error, self._picture = f"{type(error).__name__}: {error}", ""
             see["picture"].value = f'<div role="alert">{html.escape(self.error)}</div>'
         self._tell(busy=False)
 
-    def _show(self, now, design, scenario, model, result):
+    def _show(self, now, design, scenario, model, result, sure):
         """Draw the view, and beside it another where the page is wide."""
         width, height = self._size
         names = [now["view"]] + (["mass" if now["view"] == "log" else "log"] if width >= WIDE else [])
         size = (width - 14 * (len(names) - 1)) // len(names), height
-        drawn = [self._draw(name, now, design, scenario, model, result, size) for name in names]
+        drawn = [self._draw(name, now, design, scenario, model, result, size, sure) for name in names]
         self._picture, self._shown = drawn[0], now["view"]
         self.parts["picture"].value = f'<div class="rdk-pictures">{"".join(drawn)}</div>'
 
@@ -250,8 +249,7 @@ class Explorer(State):
         return [(letter, cls, evaluate(design, scenario, model=model)) for (letter, cls, _),
                 (_, design) in zip(PINS, self._pins)]
 
-    def _draw(self, view, now, design, scenario, model, result, size):
-        sure = self.intervals
+    def _draw(self, view, now, design, scenario, model, result, size, sure):
         if view == "log":
             ghosts = [(letter, cls, found.log) for letter, cls, found in self._ghosts(scenario, model)]
             return pictures.log(result, scenario, model.soc_initial, size, ghosts)
@@ -263,7 +261,7 @@ class Explorer(State):
         if view == "fleet":
             names, designs = published()
             others = evaluate(designs, scenario, model=model)
-            spans = [(sure.low[n], sure.high[n]) for n in ("total_mass_kg", "range_km")]
+            spans = sure and [(sure.low[n], sure.high[n]) for n in ("total_mass_kg", "range_km")]
             return pictures.fleet(result, (others.total_mass_kg, others.range_km, names), size, spans,
                                   self._ghosts(scenario, model))
         if view == "why":
@@ -391,7 +389,7 @@ class Explorer(State):
 
         try:
             found = size(scenario, wanted, model=model, on_generation=follow)
-            held = ", ".join(found.binding).replace("_", " ") or "nothing"
+            held = ", ".join(label(name.split(" ")[0])[0] for name in found.binding) or "nothing"
             said = found.message or (f"lightest: {found.performance.total_mass_kg:.2f} kg, held by {held}; all demands "
                                      f"hold in {100 * found.odds:.0f} % of draws")
         except Exception as error:

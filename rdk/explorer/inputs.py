@@ -53,7 +53,7 @@ class Field(NamedTuple):
 
     def words(self, value):
         """The value as its box shows it."""
-        return "none" if math.isinf(value) else f"{value * self.factor:.6g}"
+        return "none" if math.isinf(value) else f"{value * self.factor:.5g}"
 
     def read(self, text):
         """A typed text as (value, what was done to it); a decimal comma is understood.

@@ -1,7 +1,7 @@
 (root => {
 if (root.dataset.alive) return; root.dataset.alive = 1;
 const one = q => root.querySelector(q), all = q => [...root.querySelectorAll(q)], app = !!one('[data-app]');
-let last = 0, acked = 0, queue = [], timer, seen = '', size = '', pressed = '', tab = '';
+let last = 0, acked = 0, queue = [], timer, seen = '', size = '', pressed = '', tab = '', view = '';
 const send = (...event) => {
     queue = queue.filter(e => e[0] > acked && !(e[1] === event[0] && e[2] === event[1] && event[0] !== 'do'));
     last = Math.max(Date.now(), last + 1); queue.push([last, ...event]);
@@ -33,6 +33,7 @@ const apply = () => {
     }
     for (const [key, words] of Object.entries(d.t)) all(`[data-text=${key}]`).forEach(e => e.textContent = words);
     one('.rdk-picture').classList.toggle('rdk-waiting', d.busy || acked < last);
+    if (d.c.view !== view) { view = d.c.view; setTimeout(measure, 60); }
     const bar = one('progress'); bar.max = d.p[1]; bar.value = d.p[0]; bar.hidden = !d.p[2];
     if (app && d.link !== undefined) history.replaceState(null, '', location.pathname + (d.link ? '?' + d.link : ''));
 };
