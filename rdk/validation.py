@@ -204,8 +204,9 @@ def load_transfer(design, scenario, *, height_to_wheelbase=0.4, slope_deg=25.0, 
                   model: Model = Model()) -> float | np.ndarray:
     """Change of a rover's total pull, in percent, when a slope shifts weight to the lower axle at fixed total mass.
 
-    Axles are evenly spaced. On two axles the loads are w (1 +- 2 (h/L) tan(slope)) with w the mean wheel load, on
-    three w (1 +- 3 (h/L) tan(slope)) at the ends and w in the middle; all wheels turn at the same slip. NaN where the
+    Axles are evenly spaced on a stiff frame; `rdk.stability.axle_loads` has the rocker-bogie. On two axles the loads
+    are w (1 +- 2 (h/L) tan(slope)) with w the mean wheel load, on three w (1 +- 3 (h/L) tan(slope)) at the ends and w
+    in the middle; all wheels turn at the same slip. NaN where the
     pull with equal loads is not positive or an axle lifts off. The scenario gives soil and payload; the slope is 0 to
     below 90 degrees.
     """
