@@ -485,7 +485,7 @@ def test_an_unreachable_constraint_gives_an_empty_front_that_says_by_how_much():
 @pytest.mark.parametrize("changed, error, words", [
     (dict(scenario="mare"), TypeError, r"scenario must be a Scenario, such as rdk.scenario\(.*\); got 'mare'"),
     (dict(scenario=replace(MARE, slope_deg=[1, 2])), ValueError, "scenario must be a single mission"),
-    (dict(model=0.8), TypeError, "model must be a Model, such as rdk.Model\(\); got float"),
+    (dict(model=0.8), TypeError, r"model must be a Model, such as rdk.Model\(\); got float"),
     (dict(model=rdk.Model(shear_scale=[0.7, 1])), ValueError, "model must hold single numbers"),
     (dict(population=3), ValueError, "population must be a whole number, at least 4; got 3"),
     (dict(population=10.5), ValueError, "population"),
