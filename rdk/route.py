@@ -9,10 +9,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from . import catalog, mission, power, sky
-from ._fields import check
+from ._fields import Real, check
 from .design import Design, Model, Scenario
 from .terrain import Terrain
 
@@ -22,20 +21,11 @@ DRIVE, SCIENCE, CHARGE, SLEEP, ARRIVED, EMPTY, STALLED = range(7)
 
 # ---- what a metre costs ----------------------------------------------------------------------------------------
 
-def per_metre(design: Design, scenario: Scenario, slope_deg: ArrayLike, *, model: Model = Model()) -> tuple:
+def per_metre(design: Design, scenario: Scenario, slope_deg: Real, *, model: Model = Model()) -> tuple[Real, Real]:
     """Energy of the wheels (J/m) and time (s/m) for a metre of ground, at the hub's or the allowed speed.
 
-    Parameters
-    ----------
-    design, scenario, model : Design, Scenario, Model
-        Of the scenario, soil, payload and `maximum_speed_m_s` count.
-    slope_deg : float or ndarray
-        Uphill positive; broadcasts with the design.
-
-    Returns
-    -------
-    wheel_j_per_m, second_per_m : float or ndarray
-        Infinity where the rover stalls or slides.
+    The slope, uphill positive, broadcasts with the design; soil, payload and `maximum_speed_m_s` of the scenario count.
+    Both are infinite where the rover stalls or slides.
     """
     short = scenario.replace(slope_deg=slope_deg, duration_earth_days=model.time_step_h / 24)    # one step to march
     now = mission.evaluate(design, short, model=model)
@@ -48,20 +38,20 @@ def per_metre(design: Design, scenario: Scenario, slope_deg: ArrayLike, *, model
         return np.where(np.isfinite(second), hub_w * second, np.inf)[()], second[()]
 
 
-def cost(design: Design, scenario: Scenario, *, model: Model = Model(), limit_deg: float = 34.5) -> Callable:
+def cost(design: Design, scenario: Scenario, *, model: Model = Model()) -> Callable:
     """Joules for a metre of ground as a function of the slope (deg), for `cheapest`: wheels, avionics and payload.
 
-    One design; the function interpolates a table in steps of 0.5 deg and is infinite beyond `limit_deg`.
+    One design; the function interpolates a table in steps of 0.5 deg and is infinite beyond 34.5 deg.
     """
     if design.shape or scenario.shape:
         raise ValueError("cost needs one design and one scenario; a way is one rover's")
-    slope = np.arange(-limit_deg, limit_deg + 0.25, 0.5)
+    slope = np.arange(-34.5, 34.75, 0.5)
     wheel, second = per_metre(design, scenario, slope, model=model)
     joule = wheel + (design.avionics_power_w + scenario.payload_power_w) * second
     return lambda slope_deg: np.interp(slope_deg, slope, joule, left=np.inf, right=np.inf)
 
 
-def rocks_per_m2(diameter_m: ArrayLike, area_fraction: ArrayLike) -> float | np.ndarray:
+def rocks_per_m2(diameter_m: Real, area_fraction: Real) -> Real:
     """Rocks wider than `diameter_m` on a square metre, where rocks cover `area_fraction` of the ground.
 
     Golombek & Rapp (1997): those wider than D cover k exp(-q D), q = 1.79 + 0.152 / k. One covers pi D^2 / 4, so
@@ -74,22 +64,14 @@ def rocks_per_m2(diameter_m: ArrayLike, area_fraction: ArrayLike) -> float | np.
         return np.where(k > 0, 4 * k * q / np.pi * (np.exp(-q * diameter) / diameter - q * exp1(q * diameter)), 0.0)[()]
 
 
-def detour_factor(obstacle_m: ArrayLike, width_m: ArrayLike, area_fraction: ArrayLike, *,
-                  height_over_diameter: ArrayLike = 0.5) -> float | np.ndarray:
+def detour_factor(obstacle_m: Real, width_m: Real, area_fraction: Real) -> Real:
     """Length driven over length gained, where rocks too tall to climb are driven around one by one.
 
-    Parameters
-    ----------
-    obstacle_m : float or ndarray
-        Tallest rock that is climbed, `Performance.obstacle_capability_m`.
-    width_m : float or ndarray
-        Width of the rover. A metre of its swath meets the rocks whose middle lies within width + diameter, and
-        passing one costs about that length.
-    area_fraction : float or ndarray
-        Of the ground, under rocks.
-    height_over_diameter : float
+    A rover of this width climbs rocks as tall as `obstacle_m` (`Performance.obstacle_capability_m`), half as tall as
+    they are wide. A metre of its swath meets those whose middle lies within its width and their diameter, and passing
+    one costs about that length.
     """
-    diameter = np.asarray(obstacle_m) / height_over_diameter
+    diameter = 2 * np.asarray(obstacle_m)
     return 1 + rocks_per_m2(diameter, area_fraction) * (width_m + diameter) ** 2
 
 
@@ -110,21 +92,17 @@ class Route:
 
 
 def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], goal: tuple[int, int], *,
-             tilt_limit_deg: float, edge_limit_deg: float, detour: ArrayLike = 1.0) -> Route:
-    """The way of least energy between two cells, over the eight neighbours of each.
+             tilt_limit_deg: float, edge_limit_deg: float, detour: Real = 1.0) -> Route:
+    """The way of least energy between two cells (row, column; row 0 at the top), over the eight neighbours of each.
 
     Parameters
     ----------
-    terrain : Terrain
     joule_per_m : callable
-        Energy of a metre of ground at a slope along the way (deg, uphill positive): `cost(...)`, or a function of
-        arrays. Infinity where the rover cannot go; never negative.
-    start, goal : (row, column)
-        Row 0 at the top.
-    tilt_limit_deg : float
-        No cell steeper than this, in its steepest direction, is entered.
-    edge_limit_deg : float
-        No step between cells is steeper than this, up or down.
+        Energy of a metre of ground at slopes along the way (deg, uphill positive), as `cost` returns it. Infinity
+        where the rover cannot go; never negative.
+    tilt_limit_deg, edge_limit_deg : float
+        No cell steeper than the first, in its steepest direction, is entered; no step between cells is steeper than
+        the second, up or down.
     detour : float or ndarray, shape of the map
         Length driven over length gained, at least 1.
     """
@@ -172,17 +150,10 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
 
 @dataclass(frozen=True, eq=False)
 class Way:
-    """What a march needs of a way: the distance of its points, the slope between them, places, and skylines.
+    """What a march needs of a way: the map's distance of its points from the start, their places, the slope between.
 
-    Parameters
-    ----------
-    distance_m : ndarray, shape (k,)
-        From the start, on the map, rising.
-    slope_deg : ndarray, shape (k - 1,)
-        Along the way, uphill positive.
-    latitude_deg, longitude_deg : ndarray, shape (k,)
-    skyline_m, skylines : sequences of one length
-        Distance and `Skyline` of the points from which the sun is seen; none for a level horizon.
+    The slope of each leg is positive uphill. The sun is seen from the distances `skyline_m`, over `skylines`; without
+    any, over a level horizon.
     """
     distance_m: np.ndarray
     slope_deg: np.ndarray
@@ -197,7 +168,7 @@ class Way:
         return np.diff(self.distance_m) / np.cos(np.radians(self.slope_deg))
 
 
-def along(terrain: Terrain, cells: ArrayLike, *, skyline_every_m: float | None = None, height_m: float = 1.0,
+def along(terrain: Terrain, cells: np.ndarray, *, skyline_every_m: float | None = None, height_m: float = 1.0,
           beyond: tuple[Terrain, ...] = ()) -> Way:
     """The Way through cells of a map; with `skyline_every_m` it looks around at that spacing and at the end."""
     cells = np.asarray(cells)
@@ -244,28 +215,23 @@ class March:
         return (self.mode == MODES.index(mode)).sum(0) * self.time_h[0]
 
 
-def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(), delay_h: ArrayLike = 0.0,
+def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(), delay_h: Real = 0.0,
           follow_sun: bool = False, rest_soc: float = 0.5, go_soc: float = 0.9, science_every_m: float = np.inf,
           science_h: float = 0.0, detour: float = 1.0, step_h: float = 0.25) -> March:
     """Drive along a way under the real sun: drive, do science, charge, sleep, until arrival, an empty pack or a stall.
 
-    The rover drives until its charge falls to `rest_soc`, then stands with the avionics on while the sun pays for
-    them and asleep otherwise (`Model.hibernation_power_w`), and goes on at `go_soc`. It is lost when its pack
-    reaches the floor. The payload runs during science only.
+    The rover drives until its state of charge falls to `rest_soc`, then stands with the avionics on while the sun pays
+    for them and asleep otherwise (`Model.hibernation_power_w`), and goes on at `go_soc`. It is lost when its pack
+    reaches the floor. The payload runs during the stops for science only.
 
     Parameters
     ----------
-    way : Way
-    design, scenario, model : Design, Scenario, Model
-        One, or a population; `start_utc` is needed, and soil, payload, panel, speed and duration count.
+    scenario : Scenario
+        With a `start_utc`; soil, payload, panel, speed and duration count.
     delay_h : float or ndarray
         Hours after `start_utc` at which to set out; broadcasts with the designs, so that one call tries many dates.
     follow_sun : bool
         The panel turns after the sun; else it keeps the scenario's azimuth.
-    rest_soc, go_soc : float
-        State of charge at which to stop, and to go on.
-    science_every_m, science_h : float
-        Spacing and length of the stops for science.
     detour : float
         Length driven over length of the way, as from `detour_factor`.
     """
@@ -282,8 +248,7 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
         return np.broadcast_to(np.asarray(value, float), lanes or (1,))
 
     def leg(record):
-        return record.replace(**{name: value[..., None] for name, value in record.numbers().items()
-                                 if np.ndim(value) and "." not in name})
+        return record[:, None] if record.shape else record
 
     wheel, second = (np.broadcast_to(x, (column(0).size, len(way.slope_deg))) for x in per_metre(
         leg(design), leg(scenario), way.slope_deg, model=leg(model)))
@@ -303,8 +268,8 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     time = np.arange(1, steps + 1) * step_h
     date = sky.julian_date(scenario.start_utc) + (time[:, None] - step_h / 2 + np.atleast_1d(delay_h)) / 24
     declination, noon = sky.subsolar_point(date)
-    light = []                                           # cos(i) times lit share at each place of a skyline
-    for at, seen in zip(way.skyline_m or (0.0,), way.skylines or (None,)):
+    light, seen_m = [], np.array(way.skyline_m or (0.0,))            # cos(i) times lit share at each place of a skyline
+    for at, seen in zip(seen_m, way.skylines or (None,)):
         lat, lon = (np.interp(at, way.distance_m, values) for values in (
             way.latitude_deg, np.unwrap(way.longitude_deg, period=360)))
         elevation, azimuth = power.sun_position(lat, lon - noon, declination)
@@ -318,13 +283,13 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
         design.avionics_power_w, scenario.payload_power_w, model.hibernation_power_w, design.battery_capacity_wh))
     floor, into, out = column(model.soc_floor) * capacity, column(model.charge_efficiency), column(
         model.discharge_efficiency)
-    stored, distance = np.maximum(column(model.soc_initial) * capacity, floor), column(0.0)
-    resting, work_h, stop, lost = column(0) > 0, column(0.0), column(science_every_m), column(0) > 0
-    log, lane = {name: [] for name in ("distance_m", "stored_wh", "solar_w", "load_w", "mode")}, np.arange(len(stored))
+    stored, distance = np.maximum(column(model.soc_initial) * capacity, floor), column(0)
+    resting, work_h, stop, lost = column(0) > 0, column(0), column(science_every_m), column(0) > 0
+    log, lane = [], np.arange(len(stored))
     for step in range(steps):
-        if len(way.skylines) > 1:
-            k = np.clip(np.searchsorted(way.skyline_m, distance, "right") - 1, 0, len(way.skyline_m) - 2)
-            share = (distance - np.take(way.skyline_m, k)) / np.take(np.diff(way.skyline_m), k)
+        if len(seen_m) > 1:
+            k = np.clip(np.searchsorted(seen_m, distance, "right") - 1, 0, len(seen_m) - 2)
+            share = (distance - seen_m[k]) / np.diff(seen_m)[k]
             solar = panel * ((1 - share) * light[k, step, lane] + share * light[k + 1, step, lane])
         else:
             solar = panel * light[0, step]
@@ -336,39 +301,34 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
         ahead = np.where(mode == DRIVE, np.minimum(np.minimum(ahead, end), stop), distance)
         hub = (along_lane(ahead, points, joules) - along_lane(distance, points, joules)) / (3600 * step_h)
         load = np.where(mode == SLEEP, asleep, avionics) + np.where(mode == SCIENCE, payload, 0) + hub
-        load = np.where(lost, 0.0, load)
-        net = np.where(lost, 0.0, solar - load)
+        load, net = np.where(lost, 0.0, [load, solar - load])
         stored = np.minimum(stored + step_h * np.where(net > 0, net * into, net / out), capacity)
         lost = lost | (stored <= floor) & (mode < ARRIVED)
         stored = np.maximum(stored, floor)
         there = (ahead >= stop) & (mode == DRIVE)
         work_h = np.where(mode == SCIENCE, work_h - step_h, np.where(there, science_h, work_h))
         stop, distance = np.where(there, stop + science_every_m, stop), ahead
-        for name, value in zip(log, (distance, stored, solar, load, mode)):
-            log[name].append(value)
+        log.append((distance, stored, solar, load, mode))
         if np.all(lost | (distance >= way.distance_m[-1]) | (mode == STALLED)):
             break
-    log = {name: np.array(values) for name, values in log.items()}
-    time = time[:len(log["mode"])]
-    arrived = log["distance_m"][-1] >= way.distance_m[-1]
-    arrival = np.where(arrived, time[np.argmax(log["distance_m"] >= way.distance_m[-1], axis=0)], np.inf)
-    sentences = [_sentence(way, i, time, log, arrival[i], lost[i], end[i]) for i in range(len(stored))]
-    squeeze = (lambda x: x) if lanes else (lambda x: x[..., 0])
-    return March(time, **{name: squeeze(values) for name, values in log.items()}, arrival_h=squeeze(arrival)[()],
-                 stranded_m=squeeze(np.where(arrived, np.inf, log["distance_m"][-1]))[()],
-                 message=sentences if lanes else sentences[0])
+    distances, stored, solar, load, modes = (np.array(values) for values in zip(*log))
+    time, arrived = time[:len(log)], distance >= way.distance_m[-1]
+    arrival = np.where(arrived, time[np.argmax(distances >= way.distance_m[-1], axis=0)], np.inf)
+    messages = [_sentence(way, time, *of_lane) for of_lane in zip(
+        distance, arrival, lost, end, (solar > 0).T, (modes != EMPTY).T)]
+    pick = ... if lanes else (..., 0)                    # a single one comes without its column
+    return March(time, *(values[pick] for values in (distances, stored, solar, load, modes)), arrival[pick][()],
+                 np.where(arrived, np.inf, distance)[pick][()], messages if lanes else messages[0])
 
 
-def _sentence(way, i, time, log, arrival_h, lost, end_m):
+def _sentence(way, time, distance, arrival_h, lost, end_m, sunny, alive):
     """Where one lane of a march ended, and why."""
-    distance = log["distance_m"][-1, i]
     if np.isfinite(arrival_h):
         return f"arrives after {arrival_h:.1f} h"
     until = f"stranded at {distance:.0f} m after "
     if lost:
-        alive = log["mode"][:, i] != EMPTY
         last = time[alive][-1]
-        dark = last - max(time[alive][log["solar_w"][alive, i] > 0], default=0.0)
+        dark = last - max(time[alive & sunny], default=0.0)
         return f"{until}{last:.1f} h: pack empty, {dark:.1f} h after the last sun"
     if distance >= end_m:
         slope = way.slope_deg[np.searchsorted(way.distance_m, end_m, "right") - 1]

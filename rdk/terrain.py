@@ -7,17 +7,18 @@ from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from . import catalog
-from ._fields import check, unknown
+from ._fields import Real, check, limits_of, number, unknown
 from .sky import Skyline
 
 RADIUS_M = 1_737_400.0                                   # the sphere of LOLA's heights
+NEAREST_M, GROWTH = 15.0, 0.01                           # where a skyline's search begins; its steps by distance
 
 
 def _vertical(latitude_deg, longitude_deg):
@@ -26,44 +27,37 @@ def _vertical(latitude_deg, longitude_deg):
     return np.array([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)])
 
 
+def _axes(latitude_deg, longitude_deg):
+    """Unit vectors east, north and up at a place."""
+    up, east = _vertical(latitude_deg, longitude_deg), _vertical(0.0, longitude_deg + 90)
+    return np.array([east, np.cross(up, east), up])
+
+
 @dataclass(frozen=True, eq=False)
 class Terrain:
-    """Heights on a square grid, row 0 at the top, values at the centres of cells.
+    """Heights above a sphere on a square grid, row 0 at the top, values at the centres of cells, NaN for unknown.
 
-    Parameters
-    ----------
-    height_m : ndarray, shape (rows, columns)
-        Above the sphere of `radius_m`; NaN where nothing was measured.
-    step_m : float
-        Edge of a cell, positive.
-    west_m, north_m : float
-        Outer edges of the top left cell on the plane, x to the right, y upwards.
-    latitude_deg, longitude_deg : float
-        Where the plane touches the sphere; y points north there (at the south pole towards 0 E, at the north pole
-        towards 180 E).
-    radius_m : float
-    name : str
+    On the plane x runs to the right and y upwards; `west_m` and `north_m` are the outer edges of the top left cell. It
+    touches the sphere at `latitude_deg`, `longitude_deg`, where y points north: at the south pole towards 0 E, at the
+    north pole towards 180 E.
     """
     height_m: np.ndarray
-    step_m: float
-    west_m: float = 0.0
-    north_m: float = 0.0
-    latitude_deg: float = -90.0
-    longitude_deg: float = 0.0
-    radius_m: float = RADIUS_M
+    step_m: float = number(above=0, scalar=True)
+    west_m: float = number(default=0.0, scalar=True)
+    north_m: float = number(default=0.0, scalar=True)
+    latitude_deg: float = number(-90, 90, default=-90.0, scalar=True)
+    longitude_deg: float = number(default=0.0, scalar=True)
+    radius_m: float = number(1.73e6, 1.745e6, default=RADIUS_M, scalar=True)      # the Moon's
     name: str = ""
 
     def __post_init__(self):
         height = np.array(self.height_m, float)
-        if height.ndim != 2 or min(height.shape) < 2:
-            raise ValueError(f"height_m must be a grid of at least 2 x 2 cells; got shape {height.shape}")
-        if np.isinf(height).any() or np.isnan(height).all():
-            raise ValueError("height_m must hold finite heights, NaN where there is none, and not NaN alone")
+        if height.ndim != 2 or min(height.shape) < 2 or np.isinf(height).any() or np.isnan(height).all():
+            raise ValueError("height_m must be a grid of at least 2 x 2 cells with finite heights, NaN where there is "
+                             f"none, and not NaN alone; got shape {height.shape}")
         height.flags.writeable = False
-        object.__setattr__(self, "height_m", height)
-        for name, limits in (("step_m", dict(above=0)), ("west_m", {}), ("north_m", {}), ("radius_m", dict(above=0)),
-                             ("latitude_deg", dict(minimum=-90, maximum=90)), ("longitude_deg", {})):
-            object.__setattr__(self, name, check(name, getattr(self, name), scalar=True, **limits))
+        numbers = {name: check(name, getattr(self, name), **limits) for name, limits in limits_of(Terrain).items()}
+        vars(self).update(numbers, height_m=height, _axes=_axes(self.latitude_deg, self.longitude_deg))
 
     def __repr__(self):
         rows, columns = self.height_m.shape
@@ -72,27 +66,22 @@ class Terrain:
 
     # ---- places ------------------------------------------------------------------------------------------------
 
-    def _axes(self):
-        """Unit vectors east, north and up at the centre of the plane."""
-        up, east = _vertical(self.latitude_deg, self.longitude_deg), _vertical(0.0, self.longitude_deg + 90)
-        return np.array([east, np.cross(up, east), up])
-
     def _from_axes(self, east, north, up):
-        """Plane coordinates of a point of the unit sphere from its components along the axes."""
+        """Plane coordinates of a point of the unit sphere from its components along the axes of the centre."""
         return 2 * self.radius_m * east / (1 + up), 2 * self.radius_m * north / (1 + up)
 
-    def to_xy(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> tuple:
+    def to_xy(self, latitude_deg: Real, longitude_deg: Real) -> tuple[Real, Real]:
         """Plane coordinates x, y (m) of places in degrees."""
-        return self._from_axes(*np.tensordot(self._axes(), _vertical(latitude_deg, longitude_deg), 1))
+        return self._from_axes(*np.tensordot(self._axes, _vertical(latitude_deg, longitude_deg), 1))
 
-    def to_latlon(self, x: ArrayLike, y: ArrayLike) -> tuple:
+    def to_latlon(self, x: Real, y: Real) -> tuple[Real, Real]:
         """Latitude and east longitude (deg) of plane coordinates in metres."""
         u, v = np.asarray(x, float) / (2 * self.radius_m), np.asarray(y, float) / (2 * self.radius_m)
         square = u * u + v * v
-        p = np.tensordot(self._axes().T, np.array([2 * u, 2 * v, 1 - square]) / (1 + square), 1)
+        p = np.tensordot(self._axes.T, np.array([2 * u, 2 * v, 1 - square]) / (1 + square), 1)
         return np.degrees(np.arcsin(np.clip(p[2], -1, 1))), np.degrees(np.arctan2(p[1], p[0])) % 360
 
-    def cell(self, x: ArrayLike, y: ArrayLike) -> tuple:
+    def cell(self, x: Real, y: Real) -> tuple[Real, Real]:
         """Row and column of the cell that holds a point of the plane; a point outside is refused."""
         row = np.floor((self.north_m - np.asarray(y, float)) / self.step_m).astype(int)
         column = np.floor((np.asarray(x, float) - self.west_m) / self.step_m).astype(int)
@@ -103,19 +92,12 @@ class Terrain:
                              f"{self.north_m:g} m; got {x!r}, {y!r}")
         return row, column
 
-    def place(self, row: ArrayLike, column: ArrayLike) -> tuple:
+    def place(self, row: Real, column: Real) -> tuple[Real, Real]:
         """Plane coordinates x, y (m) of the centres of cells."""
         return (self.west_m + (np.asarray(column) + 0.5) * self.step_m,
                 self.north_m - (np.asarray(row) + 0.5) * self.step_m)
 
-    def _reach(self, latitude_deg, longitude_deg):
-        """Distance (m) from a place beyond which the map surely has ended."""
-        x, y = self.to_xy(latitude_deg, longitude_deg)
-        rows, columns = self.height_m.shape
-        return np.hypot(max(abs(x - self.west_m), abs(x - self.west_m - columns * self.step_m)),
-                        max(abs(y - self.north_m), abs(y - self.north_m + rows * self.step_m)))
-
-    def at(self, x: ArrayLike, y: ArrayLike) -> np.ndarray:
+    def at(self, x: Real, y: Real) -> Real:
         """Height at points of the plane, bilinear between the centres of cells; NaN outside."""
         rows, columns = self.height_m.shape
         row, column = (self.north_m - y) / self.step_m - 0.5, (x - self.west_m) / self.step_m - 0.5
@@ -147,47 +129,38 @@ class Terrain:
         facing = np.sin(elevation) - np.cos(elevation) * (np.sin(azimuth) * east + np.cos(azimuth) * north)
         return np.clip(facing / np.sqrt(1 + east**2 + north**2), 0, 1)
 
-    def skyline(self, x: float, y: float, height_m: float = 2.0, *, beyond: tuple[Terrain, ...] = (),
-                directions: int = 720, nearest_m: float = 15.0, farthest_m: float = 180e3,
-                growth: float = 0.01) -> Skyline:
-        """Skyline of a point of the map, by great circles with the Moon's curvature exact.
+    def skyline(self, x: float, y: float, height_m: float = 2.0, *, beyond: Sequence[Terrain] = (),
+                directions: int = 720, farthest_m: float = 180e3) -> Skyline:
+        """Skyline of an eye above the ground at x, y, by great circles with the Moon's curvature exact.
 
-        A point of radius r at the arc g stands at tan(elevation) = (r cos g - r_eye) / (r sin g).
-
-        Parameters
-        ----------
-        x, y, height_m : float
-            Place on the plane, and height of the eye above the ground there, zero or more.
-        beyond : sequence of Terrain
-            Coarser maps, for what this one does not cover: the first that covers a point gives its height. Where
-            all maps end, nothing more is seen.
-        directions : int
-            Evenly spaced azimuths, at least 4.
-        nearest_m, farthest_m : float
-            Where the search begins and ends. The steps are half a cell, later `growth` of the distance.
+        Coarser maps `beyond` serve where this one ends: the first that covers a point gives its height; where all end,
+        nothing more is seen. The search begins at 15 m, by half a cell, later by 1 % of the distance.
         """
         check("height_m", height_m, 0, scalar=True), check("directions", directions, 4, whole=True, scalar=True)
-        check("nearest_m", nearest_m, above=0), check("farthest_m", farthest_m, above=nearest_m)
-        check("growth", growth, above=0, maximum=1)
+        check("farthest_m", farthest_m, above=NEAREST_M)
         ground = float(self.at(float(x), float(y)))
         if np.isnan(ground):
             raise ValueError(f"no height is known at x {x!r} m, y {y!r} m of {self!r}")
-        turn = self.step_m / 2 / growth
-        s = np.arange(nearest_m, min(turn, farthest_m), self.step_m / 2)
+        turn = self.step_m / 2 / GROWTH
+        s = np.arange(NEAREST_M, min(turn, farthest_m), self.step_m / 2)
         if farthest_m > turn:
-            s = np.r_[s, np.geomspace(turn, farthest_m, max(int(np.log(farthest_m / turn) / growth), 2))]
+            s = np.r_[s, np.geomspace(turn, farthest_m, max(int(np.log(farthest_m / turn) / GROWTH), 2))]
         arc, azimuth = s / self.radius_m, np.arange(directions) * 360 / directions
         lat, lon = self.to_latlon(x, y)
-        up, east = _vertical(lat, lon), _vertical(0.0, lon + 90)
-        ahead = np.outer(np.cos(np.radians(azimuth)), np.cross(up, east)) + np.outer(np.sin(np.radians(azimuth)), east)
+        east, north, up = _axes(lat, lon)
+        ahead = np.outer(np.cos(np.radians(azimuth)), north) + np.outer(np.sin(np.radians(azimuth)), east)
         height = np.full((directions, len(s)), np.nan)
         for terrain in (self, *beyond):                  # of each map only the stretch that it can add to
-            stretch = slice(np.argmax(np.isnan(height).any(axis=0)), np.searchsorted(s, terrain._reach(lat, lon)))
+            corner = np.subtract(terrain.to_xy(lat, lon), (terrain.west_m, terrain.north_m))
+            other = corner - np.multiply(terrain.height_m.shape[::-1], (terrain.step_m, -terrain.step_m))
+            reach = np.hypot(*np.maximum(abs(corner), abs(other)))
+            stretch = slice(np.argmax(np.isnan(height).any(axis=0)), np.searchsorted(s, reach))
             rays = [np.outer(ahead @ axis, np.sin(arc[stretch])) + (up @ axis) * np.cos(arc[stretch])
-                    for axis in terrain._axes()]
+                    for axis in terrain._axes]
             known = height[:, stretch]
             height[:, stretch] = np.where(np.isnan(known), terrain.at(*terrain._from_axes(*rays)), known)
         r, eye = self.radius_m + height, self.radius_m + ground + height_m
+        # a point of radius r at the arc g stands at tan(elevation) = (r cos g - r_eye) / (r sin g)
         tangent = np.fmax.reduce((r * np.cos(arc) - eye) / (r * np.sin(arc)), axis=1)
         tangent = np.where(np.isnan(tangent), -np.sqrt(max((eye / self.radius_m)**2 - 1, 0)), tangent)   # a bare sphere
         return Skyline(azimuth, np.degrees(np.arctan(tangent)), float(lat), float(lon), float(height_m),
@@ -196,62 +169,53 @@ class Terrain:
 
 # ---- files -----------------------------------------------------------------------------------------------------
 
-def read(path: str | Path, *, scale: float | None = None, offset: float | None = None, west_m: float | None = None,
-         north_m: float | None = None, step_m: float | None = None, latitude_deg: float | None = None,
-         longitude_deg: float | None = None) -> Terrain:
+def read(path: str | Path, **geometry: float) -> Terrain:
     """A height map from a file, with its place on the Moon.
 
     A PDS image (`.img` with its label `.lbl` beside it) and a GeoTIFF (`.tif`, with `tifffile` installed) say
-    themselves where they are. A 16-bit PNG does not: give the keywords, or put a `terrain.csv` beside it with a row
-    that has them as columns and the file's name in `file`.
-
-    Parameters
-    ----------
-    path : str or Path
-    scale, offset : float
-        For a PNG: height in metres = value * scale + offset.
-    west_m, north_m, step_m, latitude_deg, longitude_deg : float
-        For a PNG: as in `Terrain`; the centre of the plane is the south pole unless given.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be placed: another projection, another body, no geometry.
+    themselves where they are. A 16-bit PNG does not: give `scale` and `offset` (height in metres = value * scale +
+    offset), `west_m`, `north_m`, `step_m` and, away from the south pole, `latitude_deg` and `longitude_deg` as in
+    `Terrain`, or put a `terrain.csv` beside it with a row that has them as columns and the file's name in `file`.
+    What cannot be placed (another projection, another body, no geometry) is refused.
     """
-    path, given = Path(path), dict(scale=scale, offset=offset, west_m=west_m, north_m=north_m, step_m=step_m,
-                                   latitude_deg=latitude_deg, longitude_deg=longitude_deg)
+    path = Path(path)
     if not path.exists():
         raise FileNotFoundError(f"no file {path}")
-    kind = path.suffix.lower()
-    if kind == ".png":
-        return _png(path, given)
-    if any(value is not None for value in given.values()):
-        raise ValueError(f"{path.name} says itself where it lies: give scale, offset and geometry for a PNG only")
-    readers = {".img": _pds, ".lbl": _pds, ".tif": _geotiff, ".tiff": _geotiff}
+    kind, readers = path.suffix.lower(), {".png": _png, ".img": _pds, ".lbl": _pds, ".tif": _geotiff, ".tiff": _geotiff}
     if kind not in readers:
         raise ValueError(f"{path.name}: a height map must be a .png, .tif, or .img with its .lbl; got {kind or 'none'}")
-    return readers[kind](path)
+    if geometry and kind != ".png":
+        raise ValueError(f"{path.name} says itself where it lies: give scale, offset and geometry for a PNG only")
+    return readers[kind](path, **geometry)
 
 
-def _png(path, given):
+def _number(path, header, *names, default=None):
+    """The first of these entries that a header has, as a number."""
+    value = next((header[name] for name in names if name in header), default)
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{path.name} cannot be placed: {names[0]} must be a number; got {value!r}") from None
+
+
+def _png(path, **given):
     from PIL import Image
-    table = path.with_name("terrain.csv")
-    if not any(value is not None for value in given.values()) and table.exists():
+    table, needed = path.with_name("terrain.csv"), ("scale", "offset", "west_m", "north_m", "step_m")
+    if not given and table.exists():
         with open(table, encoding="utf-8", newline="") as file:
             row = next((row for row in csv.DictReader(file) if row.get("file") == path.name), {})
-        given |= {key: float(row[key]) for key in ("scale", "offset", "west_m", "north_m", "step_m") if row.get(key)}
+        given = {name: _number(path, row, name) for name in needed if row.get(name)}
         if centre := re.search(r"centre ([\d.]+) ([NS]) (-?[\d.]+) E", row.get("projection", "")):
-            given["latitude_deg"] = float(centre[1]) * (1 if centre[2] == "N" else -1)
-            given["longitude_deg"] = float(centre[3])
-    missing = [key for key in ("scale", "offset", "west_m", "north_m", "step_m") if given[key] is None]
+            north = 1 if centre[2] == "N" else -1
+            given |= dict(latitude_deg=north * float(centre[1]), longitude_deg=float(centre[3]))
+    missing = [name for name in needed if name not in given]
     if missing:
         raise ValueError(f"{path.name}: a PNG does not say where it lies; give {', '.join(missing)}")
     with Image.open(path) as image:
         if not image.mode.startswith("I"):
             raise ValueError(f"{path.name}: heights need one channel of 16 bits; got mode {image.mode}")
         raw = np.asarray(image).astype(float)
-    scale, offset = given.pop("scale"), given.pop("offset")
-    return Terrain(raw * scale + offset, name=path.stem, **{k: v for k, v in given.items() if v is not None})
+    return Terrain(raw * given.pop("scale") + given.pop("offset"), name=path.stem, **given)
 
 
 def _pds(path):
@@ -260,45 +224,38 @@ def _pds(path):
         if kind not in found:
             raise FileNotFoundError(f"{path.name} needs {path.stem}{kind} beside it")
     text = re.sub(r"/\*.*?\*/", "", found[".lbl"].read_text(encoding="latin-1"), flags=re.S)
-    label = {key: value.strip() for key, value in re.findall(r"^\s*(\^?\w+)\s*=\s*(.+?)\s*$", text, re.M)}
+    entries = re.findall(r"^\s*(\^?\w+)\s*=\s*([^<\n]*)(<K)?", text, re.M | re.I)       # <K: of <KM>
+    label = {key: value.strip(" \t\r\"'") for key, value, _ in entries}
+    scale = {key: 1000 if unit else 1 for key, _, unit in entries}
+
+    def entry(key, **default):
+        """A number of the label, lengths in metres."""
+        return _number(path, label, key, **default) * scale.get(key, 1)
 
     def word(key):
-        if key not in label:
-            raise ValueError(f"{path.stem}: the label has no {key}")
-        return label[key].partition("<")[0].strip().strip("\"'").strip()
+        return label.get(key, "").upper()
 
-    def length(key):
-        """A number of the label in metres."""
-        return number(key) * (1000 if "<K" in label[key].upper() else 1)
-
-    def number(key, default=None):
-        text = word(key) if key in label or default is None else default
-        try:
-            return float(text)
-        except ValueError:
-            raise ValueError(f"{path.stem}: {key} must be a number; got {text!r}") from None
-
-    _expect(path, "projection", word("MAP_PROJECTION_TYPE").upper().replace("_", " "),
+    _expect(path, "projection", word("MAP_PROJECTION_TYPE").replace("_", " "),
             ("POLAR STEREOGRAPHIC", "STEREOGRAPHIC"))
-    _expect(path, "direction of longitude", word("POSITIVE_LONGITUDE_DIRECTION").upper(), ("EAST",))
-    radius = _moon(path, length("A_AXIS_RADIUS"))
+    _expect(path, "direction of longitude", word("POSITIVE_LONGITUDE_DIRECTION"), ("EAST",))
+    radius = entry("A_AXIS_RADIUS")
     kinds = {"LSB_INTEGER": "<i", "MSB_INTEGER": ">i", "PC_REAL": "<f", "IEEE_REAL": ">f"}
-    sample = _expect(path, "sample type", word("SAMPLE_TYPE").upper(), kinds)
-    rows, columns = int(number("LINES")), int(number("LINE_SAMPLES"))
-    raw = np.fromfile(found[".img"], np.dtype(f"{kinds[sample]}{int(number('SAMPLE_BITS')) // 8}"))
+    sample = _expect(path, "sample type", word("SAMPLE_TYPE"), kinds)
+    rows, columns = int(entry("LINES")), int(entry("LINE_SAMPLES"))
+    raw = np.fromfile(found[".img"], np.dtype(f"{kinds[sample]}{int(entry('SAMPLE_BITS')) // 8}"))
     if raw.size != rows * columns:
         raise ValueError(f"{found['.img'].name} holds {raw.size} samples; its label says {rows} x {columns}")
     height = raw.reshape(rows, columns).astype(float)
     if re.match(r"[-+.\d]+(E[-+]?\d+)?$", label.get("MISSING_CONSTANT", ""), re.I):      # not N/A, nor a bit pattern
-        height[height == number("MISSING_CONSTANT")] = np.nan
-    unit = 1000 if word("UNIT").upper().startswith("K") else 1
-    height = (height * number("SCALING_FACTOR", 1) + number("OFFSET", 0)) * unit
+        height[height == entry("MISSING_CONSTANT")] = np.nan
+    unit = 1000 if word("UNIT").startswith("K") else 1
+    height = (height * entry("SCALING_FACTOR", default=1) + entry("OFFSET", default=0)) * unit
     if np.nanmedian(height) > radius / 2:                # the label counts from the Moon's centre
         height -= radius
-    step = length("MAP_SCALE")                           # offsets count samples from the middle of the first one
-    return Terrain(height, step, -(number("SAMPLE_PROJECTION_OFFSET") + 0.5) * step,
-                   (number("LINE_PROJECTION_OFFSET") + 0.5) * step, number("CENTER_LATITUDE"),
-                   number("CENTER_LONGITUDE"), radius, path.stem)
+    step = entry("MAP_SCALE")                           # offsets count samples from the middle of the first one
+    return Terrain(height, step, -(entry("SAMPLE_PROJECTION_OFFSET") + 0.5) * step,
+                   (entry("LINE_PROJECTION_OFFSET") + 0.5) * step, entry("CENTER_LATITUDE"),
+                   entry("CENTER_LONGITUDE"), radius, path.stem)
 
 
 def _geotiff(path):
@@ -310,8 +267,6 @@ def _geotiff(path):
         page = file.pages[0]
         height, keys = page.asarray().astype(float), dict(page.geotiff_tags or {})
         nodata = page.tags.get("GDAL_NODATA")
-    if height.ndim != 2:
-        raise ValueError(f"{path.name}: heights need one channel; got an image of shape {height.shape}")
     if not {"ModelPixelScale", "ModelTiepoint", "ProjCoordTransGeoKey"} <= set(keys):
         raise ValueError(f"{path.name} cannot be placed: a GeoTIFF needs a pixel scale, a tie point and a projection")
     if nodata is not None:
@@ -319,26 +274,26 @@ def _geotiff(path):
     projection = int(keys["ProjCoordTransGeoKey"])
     _expect(path, "projection", projection, {1: "transverse Mercator", 14: "stereographic", 15: "polar stereographic",
                                              16: "oblique stereographic", 21: "orthographic"})
-    step_x, step_y = keys["ModelPixelScale"][:2]
-    if not np.isclose(step_x, step_y, rtol=1e-6):
-        raise ValueError(f"{path.name}: cells must be square; got {step_x:g} x {step_y:g} m")
+    step, step_y = keys["ModelPixelScale"][:2]
+    if not np.isclose(step, step_y, rtol=1e-6):
+        raise ValueError(f"{path.name}: cells must be square; got {step:g} x {step_y:g} m")
 
-    def number(*names, default=0.0):
-        return next((float(keys[name]) for name in names if name in keys), default)
+    def entry(*names, default=0.0):
+        return _number(path, keys, *names, default=default)
 
-    latitude = number("ProjNatOriginLatGeoKey", "ProjCenterLatGeoKey")
-    longitude = number("ProjStraightVertPoleLongGeoKey", "ProjNatOriginLongGeoKey", "ProjCenterLongGeoKey")
-    if projection == 15 and abs(latitude) != 90 or number("ProjScaleAtNatOriginGeoKey", default=1.0) != 1:
+    latitude = entry("ProjNatOriginLatGeoKey", "ProjCenterLatGeoKey")
+    longitude = entry("ProjStraightVertPoleLongGeoKey", "ProjNatOriginLongGeoKey", "ProjCenterLongGeoKey")
+    if projection == 15 and abs(latitude) != 90 or entry("ProjScaleAtNatOriginGeoKey", default=1.0) != 1:
         raise ValueError(f"{path.name}: the scale must be true at the centre of the projection")
     i, k, _, x, y = keys["ModelTiepoint"][:5]
-    middle = 0.5 if int(number("GTRasterTypeGeoKey", default=1)) == 2 else 0.0    # 2: the tie point is a cell's centre
-    west = x - (i + middle) * step_x - number("ProjFalseEastingGeoKey", "ProjFalseOriginEastingGeoKey")
-    north = y + (k + middle) * step_x - number("ProjFalseNorthingGeoKey", "ProjFalseOriginNorthingGeoKey")
-    far = max(abs(west), abs(north), abs(west + height.shape[1] * step_x), abs(north - height.shape[0] * step_x))
+    middle = 0.5 if entry("GTRasterTypeGeoKey", default=1) == 2 else 0.0    # 2: the tie point is a cell's centre
+    west = x - (i + middle) * step - entry("ProjFalseEastingGeoKey", "ProjFalseOriginEastingGeoKey")
+    north = y + (k + middle) * step - entry("ProjFalseNorthingGeoKey", "ProjFalseOriginNorthingGeoKey")
+    far = max(abs(west), abs(north), abs(west + height.shape[1] * step), abs(north - height.shape[0] * step))
     if projection in (1, 21) and far > 100e3:            # near its centre every such plane is the tangent one
         raise ValueError(f"{path.name}: this projection is read within 100 km of its centre; it reaches {far:.0f} m")
-    return Terrain(height, step_x, west, north, latitude, longitude,
-                   _moon(path, number("GeogSemiMajorAxisGeoKey", default=np.nan)), path.stem)
+    return Terrain(height, step, west, north, latitude, longitude,
+                   entry("GeogSemiMajorAxisGeoKey", default=np.nan), path.stem)
 
 
 def _expect(path, what, value, allowed):
@@ -348,30 +303,14 @@ def _expect(path, what, value, allowed):
     return value
 
 
-def _moon(path, radius_m):
-    if not 1.73e6 < radius_m < 1.745e6:
-        raise ValueError(f"{path.name} cannot be placed: its sphere must be the Moon's, 1737.4 km; got {radius_m:g} m")
-    return radius_m
-
-
 # ---- made-up ground --------------------------------------------------------------------------------------------
 
 def synthetic(seed: int, *, like: str = "connecting_ridge_10m", cells: int = 256, step_m: float | None = None,
               latitude_deg: float = -85.0, longitude_deg: float = 0.0) -> Terrain:
-    """Made-up ground: a fractal with craters, its slopes those of a real map. It repeats at its edges.
+    """Made-up ground around a place: a fractal with craters, its slopes those of a real map. It repeats at its edges.
 
-    Parameters
-    ----------
-    seed : int
-        The same seed makes the same ground.
-    like : str
-        A map of `data/slope_histograms.csv`; its name ends in the length of its cells.
-    cells : int
-        Rows and columns, at least 32.
-    step_m : float, optional
-        Length of a cell; the real map's, by default. Slopes belong to a baseline.
-    latitude_deg, longitude_deg : float
-        Of the middle of the map.
+    `like` is a map of `data/slope_histograms.csv`, whose name ends in the length of its cells; `step_m` is that length
+    unless given. Slopes belong to this baseline. The same seed makes the same ground.
     """
     table = catalog.rows("slope_histograms.csv")
     known = [name.removesuffix("_pct") for name in table[0] if name.endswith("_pct")]
@@ -394,7 +333,7 @@ def synthetic(seed: int, *, like: str = "connecting_ridge_10m", cells: int = 256
                    longitude_deg, name=f"synthetic {seed}, like {like}")
 
 
-def _with_slopes(height, table, like, rounds=10):
+def _with_slopes(height, table, like):
     """Heights in cells whose slopes have the shares of a table: scale each gradient, integrate, again."""
     shares = np.cumsum([float(row[f"{like}_pct"]) for row in table])
     ends = np.array([float(row["slope_to_deg"]) for row in table])
@@ -403,7 +342,7 @@ def _with_slopes(height, table, like, rounds=10):
     wave = np.sin(2 * np.pi * np.fft.fftfreq(len(height)))           # of central differences
     square = wave[:, None]**2 + wave**2
     square[square < 1e-12] = np.inf                      # level and checkerboard, which have no slope
-    for _ in range(rounds):
+    for _ in range(10):
         down = (np.roll(height, -1, 0) - np.roll(height, 1, 0)) / 2
         right = (np.roll(height, -1, 1) - np.roll(height, 1, 1)) / 2
         steep = np.hypot(down, right)
