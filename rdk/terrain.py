@@ -252,7 +252,7 @@ def _pds(path):
     height = (height * entry("SCALING_FACTOR", default=1) + entry("OFFSET", default=0)) * unit
     if np.nanmedian(height) > radius / 2:                # the label counts from the Moon's centre
         height -= radius
-    step = entry("MAP_SCALE")                           # offsets count samples from the middle of the first one
+    step = entry("MAP_SCALE")                            # offsets count samples from the middle of the first one
     return Terrain(height, step, -(entry("SAMPLE_PROJECTION_OFFSET") + 0.5) * step,
                    (entry("LINE_PROJECTION_OFFSET") + 0.5) * step, entry("CENTER_LATITUDE"),
                    entry("CENTER_LONGITUDE"), radius, path.stem)
@@ -286,7 +286,7 @@ def _geotiff(path):
     if projection == 15 and abs(latitude) != 90 or entry("ProjScaleAtNatOriginGeoKey", default=1.0) != 1:
         raise ValueError(f"{path.name}: the scale must be true at the centre of the projection")
     i, k, _, x, y = keys["ModelTiepoint"][:5]
-    middle = 0.5 if entry("GTRasterTypeGeoKey", default=1) == 2 else 0.0    # 2: the tie point is a cell's centre
+    middle = 0.5 if entry("GTRasterTypeGeoKey", default=1) == 2 else 0.0     # 2: the tie point is a cell's centre
     west = x - (i + middle) * step - entry("ProjFalseEastingGeoKey", "ProjFalseOriginEastingGeoKey")
     north = y + (k + middle) * step - entry("ProjFalseNorthingGeoKey", "ProjFalseOriginNorthingGeoKey")
     far = max(abs(west), abs(north), abs(west + height.shape[1] * step), abs(north - height.shape[0] * step))
