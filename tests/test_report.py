@@ -15,7 +15,7 @@ import pytest
 
 import rdk
 from rdk import catalog
-from exercises import capstone
+from exercises.capstone import SWIRL
 from rdk.design import Problem
 from rdk.report import Requirement, joint_odds, report, requirements, write
 
@@ -148,7 +148,7 @@ def test_verdict_and_risks_say_what_the_table_says():
 
 
 def test_front_baseline_and_changed_coefficients_show():
-    front = rdk.pareto_front(capstone.SWIRL, population=8, generations=40, seed=1, constraints=[])
+    front = rdk.pareto_front(SWIRL.mission, population=8, generations=40, seed=1, constraints=[])
     text = report(RASHID, MARE, "x", front=front, baseline=rdk.rover("Tenacious"), baseline_name="Tenacious",
                   why="slope_capability_deg", model=rdk.Model(drivetrain_efficiency=0.7), draws=20)
     alts = Page(text).pictures
@@ -232,8 +232,8 @@ def test_a_persons_matplotlibrc_does_not_reach_a_live_picture(tmp_path):
 def test_it_prints_on_one_page_of_a4_with_a_full_page_of_notes(tmp_path):
     from playwright.sync_api import sync_playwright
     notes = "\n\n".join(["A choice, and what was given up for it: " + "some sixty words of text, " * 10] * 4)
-    text = report(RASHID, replace(capstone.SWIRL), "Rashid-1 at Reiner Gamma", notes, draws=50,
-                  bounds=capstone.SWIRL_LIMITS)
+    text = report(RASHID, SWIRL.mission, "Rashid-1 at Reiner Gamma", notes, draws=50,
+                  bounds=SWIRL.limits)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
         tab = browser.new_page(viewport={"width": 1000, "height": 1300})

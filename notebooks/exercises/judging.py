@@ -23,8 +23,8 @@ class Exercise:
     kind : str
         "number", "3 numbers", "word", "set of words", "True or False" or "Design". It is stored, so that an answer
         of another kind is refused without computing the right one.
-    answer : callable
-        Returns a right answer.
+    answer : callable or None
+        Returns a right answer; None where many are right and none is stored.
     hint : str
         What to look at, for a wrong answer that no mistake explains.
     mistakes : dict of str to callable
@@ -37,7 +37,7 @@ class Exercise:
         Words to choose from.
     """
     kind: str
-    answer: Callable
+    answer: Callable | None
     hint: str
     mistakes: dict = dataclasses.field(default_factory=dict)
     within: float = 0.02
