@@ -226,6 +226,11 @@ def test_by_keyboard_alone(explorer):
     lever.press("Enter")
     settled(explorer)
     assert explorer.page.evaluate("document.activeElement !== document.body")
+    number.fill("90")                                    # what was pressed before does not take the focus back
+    number.press("Enter")
+    number.evaluate("e => e.blur()")
+    settled(explorer)
+    assert explorer.page.evaluate("document.activeElement === document.body")
 
 
 def test_ends_of_every_slider(explorer):

@@ -80,7 +80,8 @@ root.addEventListener('keydown', e => { const t = e.target;
         next.tabIndex = 0; next.focus(); if (t.matches('[role=tab]')) next.click(); } });
 root.addEventListener('toggle', e => { if (e.target.open && e.target.matches('.rdk-help'))
     all('.rdk-help[open]').forEach(d => d.open = d === e.target); }, true);
-root.addEventListener('focusin', e => { e.target.dataset.lmSuppressShortcuts = 'true'; });
+root.addEventListener('focusin', e => { e.target.dataset.lmSuppressShortcuts = 'true';
+    if (e.target.dataset.do !== pressed) pressed = ''; });
 const measure = () => { const p = one('.rdk-picture'); if (!p || !p.clientWidth) return;
     const phone = root.clientWidth <= 700, room = app && !phone ? innerHeight - p.getBoundingClientRect().top -
         scrollY - (one('.rdk-tray')?.offsetHeight || 90) - 50 : 380;
