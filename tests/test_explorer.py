@@ -294,6 +294,16 @@ def test_undo_redo_and_reset(explorer):
     assert_current(explorer)
 
 
+def test_what_changes_nothing_is_no_step(explorer):
+    events(explorer, ["type", "wheel_radius_m", "130"])
+    events(explorer, ["type", "wheel_radius_m", "130"])  # a box that is left says its number again
+    explorer.set(mission=MARE, wheel_count=4)
+    gain = explorer.result.total_mass_kg - rdk.evaluate(rdk.rover("Rashid-1"), explorer.scenario).total_mass_kg
+    assert len(explorer._past) == 1 and f"{gain:+.1f}" in shown(explorer)
+    explorer.undo()
+    assert explorer.design == rdk.rover("Rashid-1")
+
+
 def test_a_drag_is_one_step_back(explorer):
     for position in range(40, 70):
         events(explorer, ["slide", "wheel_radius_m", position])

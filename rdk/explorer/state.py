@@ -103,7 +103,8 @@ class State:
         """
         checked = {name: check(name, value, self.menus) for name, value in values.items()}
         with self._lock:
-            if any(name in RESTORED or name in ("rover", "mission", "soil") for name in checked):
+            moved = [name for name, value in checked.items() if self.state[name] != value]
+            if any(name in RESTORED or name in ("rover", "mission", "soil") for name in moved):
                 self._remember(tuple(checked))
             for name, value in checked.items():
                 self._assign(name, value)
