@@ -9,6 +9,7 @@ import csv
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -223,8 +224,8 @@ def _pds(path):
     for kind in (".lbl", ".img"):
         if kind not in found:
             raise FileNotFoundError(f"{path.name} needs {path.stem}{kind} beside it")
-    text = re.sub(r"/\*.*?\*/", "", found[".lbl"].read_text(encoding="latin-1"), flags=re.S)
-    entries = re.findall(r"^\s*(\^?\w+)\s*=\s*([^<\n]*)(<K)?", text, re.M | re.I)       # <K: of <KM>
+    text = re.sub(r"/\*.*?\*/", "", found[".lbl"].read_text(encoding="latin-1").upper(), flags=re.S)
+    entries = re.findall(r"^\s*(\^?\w+)\s*=\s*([^<\n]*)(<K)?", text, re.M)      # <K: of <KM>
     label = {key: value.strip(" \t\r\"'") for key, value, _ in entries}
     scale = {key: 1000 if unit else 1 for key, _, unit in entries}
 
@@ -232,23 +233,20 @@ def _pds(path):
         """A number of the label, lengths in metres."""
         return _number(path, label, key, **default) * scale.get(key, 1)
 
-    def word(key):
-        return label.get(key, "").upper()
-
-    _expect(path, "projection", word("MAP_PROJECTION_TYPE").replace("_", " "),
+    _expect(path, "projection", label.get("MAP_PROJECTION_TYPE", "").replace("_", " "),
             ("POLAR STEREOGRAPHIC", "STEREOGRAPHIC"))
-    _expect(path, "direction of longitude", word("POSITIVE_LONGITUDE_DIRECTION"), ("EAST",))
+    _expect(path, "direction of longitude", label.get("POSITIVE_LONGITUDE_DIRECTION"), ("EAST",))
     radius = entry("A_AXIS_RADIUS")
     kinds = {"LSB_INTEGER": "<i", "MSB_INTEGER": ">i", "PC_REAL": "<f", "IEEE_REAL": ">f"}
-    sample = _expect(path, "sample type", word("SAMPLE_TYPE"), kinds)
+    sample = _expect(path, "sample type", label.get("SAMPLE_TYPE"), kinds)
     rows, columns = int(entry("LINES")), int(entry("LINE_SAMPLES"))
     raw = np.fromfile(found[".img"], np.dtype(f"{kinds[sample]}{int(entry('SAMPLE_BITS')) // 8}"))
     if raw.size != rows * columns:
         raise ValueError(f"{found['.img'].name} holds {raw.size} samples; its label says {rows} x {columns}")
     height = raw.reshape(rows, columns).astype(float)
-    if re.match(r"[-+.\d]+(E[-+]?\d+)?$", label.get("MISSING_CONSTANT", ""), re.I):      # not N/A, nor a bit pattern
+    if re.match(r"[-+.\d]+(E[-+]?\d+)?$", label.get("MISSING_CONSTANT", "")):     # not N/A, nor a bit pattern
         height[height == entry("MISSING_CONSTANT")] = np.nan
-    unit = 1000 if word("UNIT").startswith("K") else 1
+    unit = 1000 if label.get("UNIT", "").startswith("K") else 1
     height = (height * entry("SCALING_FACTOR", default=1) + entry("OFFSET", default=0)) * unit
     if np.nanmedian(height) > radius / 2:                # the label counts from the Moon's centre
         height -= radius
@@ -278,9 +276,7 @@ def _geotiff(path):
     if not np.isclose(step, step_y, rtol=1e-6):
         raise ValueError(f"{path.name}: cells must be square; got {step:g} x {step_y:g} m")
 
-    def entry(*names, default=0.0):
-        return _number(path, keys, *names, default=default)
-
+    entry = partial(_number, path, keys, default=0.0)
     latitude = entry("ProjNatOriginLatGeoKey", "ProjCenterLatGeoKey")
     longitude = entry("ProjStraightVertPoleLongGeoKey", "ProjNatOriginLongGeoKey", "ProjCenterLongGeoKey")
     if projection == 15 and abs(latitude) != 90 or entry("ProjScaleAtNatOriginGeoKey", default=1.0) != 1:
