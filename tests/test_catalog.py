@@ -81,7 +81,7 @@ def test_table_is_the_file_as_a_frame():
     (lambda: rdk.rover("rashid-1"), "no rover 'rashid-1'; nearest are .*Rashid-1"),
     (lambda: rdk.scenario_names("arctic"),
      "no kind of scenario 'arctic'; choose from canonical, class-generic, "),
-], ids=str)
+], ids=range(7))
 def test_unknown_names_are_answered_with_the_known_ones(call, message):
     with pytest.raises(ValueError, match=message):
         call()
