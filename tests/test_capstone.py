@@ -1,5 +1,6 @@
 """The briefs of the capstone: each can be met, and the judge tells by data what a design misses."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -122,3 +123,67 @@ def test_the_trade_moves_one_thing_at_a_time_within_the_limits():
     lighter = rdk.evaluate(design, brief.scenario).total_mass_kg
     np.testing.assert_allclose(table.loc["chassis_mass_kg", "mass (kg)"], heavier - lighter, rtol=1e-12)   # rounding
     assert table.loc["grousers (height, count)", "mass (kg)"] > 0        # from none: both grow
+
+
+# ---- exemplars -------------------------------------------------------------------------------------------------
+
+def report_of(name):
+    """The text of an exemplary report, and the design in its first table."""
+    text = (REPO / f"notebooks/exemplars/{name}.md").read_text(encoding="utf-8")
+    values = re.findall(r"^\| (\w+) \| ([\d.]+) \|$", text, re.M)
+    assert [field for field, _ in values] == list(rdk.DESIGN_SPACE)
+    return text, rdk.Design(**{field: int(value) if field.endswith("count") else float(value)
+                               for field, value in values})
+
+
+def test_the_numbers_of_the_strong_report_are_computed():
+    (text, design), brief = report_of("strong"), BRIEFS["swirl"]
+    found, now = capstone.judged(design, brief), rdk.evaluate(design, brief.scenario)
+    assert found.missing == "" and f"{100 * found.joint:.1f} % of 8,192 draws" in text
+    assert f"rover of {now.total_mass_kg:.2f} kg" in text and f"{19 - now.total_mass_kg:.2f} kg of the" in text
+    candidates = {"first guess": brief.guess, "lightest (`rdk.size`)": rdk.size(
+        brief.scenario, brief.demands, bounds=brief.limits).design, "wide wheels": design.replace(
+        wheel_width_m=0.10, battery_capacity_wh=235.0), "**proposed**": design}
+    for name, candidate in candidates.items():
+        seen = capstone.judged(candidate, brief)
+        slope, charge, mass = (f"{100 * share:.0f} %" for share in seen.shares[3:])
+        assert f"| {name} | {seen.values[-1]:.2f} | {slope} | {charge} | {mass} | {100 * seen.joint:.1f} % |" in text
+    gain = rdk.attribution(design, brief.guess, brief.scenario).to_frame()
+    assert f"{gain.slope_capability_deg['grouser_count']:.1f}° of slope" in text
+    assert f"for {gain.total_mass_kg['grouser_count']:.2f} kg" in text
+    assert f"give {-gain.total_mass_kg['wheel_width_m']:.2f} kg back" in text
+    battery = capstone.trade(design, brief).loc["battery_capacity_wh"]
+    assert f"adds {battery['mass (kg)']:.2f} kg and costs {-battery['all together (points)']:.1f} points" in text
+    assert f"asks for {now.wheel_torque_nm:.2f} N m" in text
+    assert f"{100 * now.structure_share:.0f} % of the mass" in text
+    lightest = candidates["lightest (`rdk.size`)"]
+    assert (f"buys {lightest.peak_wheel_torque_nm:.2f} N m, and it drives in "
+            f"{100 * capstone.judged(lightest, brief).shares[1]:.0f} % of the draws") in text
+    weak = rdk.evaluate(design, brief.scenario.replace(soil=rdk.soil("sourcebook-trafficability")))
+    assert f"a slip of {weak.slip:.2f}" in text and f"capability is {weak.slope_capability_deg:.1f}°" in text
+    assert rdk.evaluate(design, brief.scenario, model=rdk.Model(dust_factor=0.6)).minimum_soc == 0.15
+    web = rdk.evaluate(design, brief.scenario, model=rdk.Model(wheel_web_factor=1.0)).total_mass_kg
+    assert f"weighs {web:.2f} kg, {web - 19:.2f} kg above" in text
+
+
+def test_the_numbers_of_the_weak_report_are_computed():
+    (text, design), brief = report_of("weak"), BRIEFS["swirl"]
+    found, now = capstone.judged(design, brief), rdk.evaluate(design, brief.scenario)
+    assert "All demands together" in found.missing and "total_mass_kg" in found.missing
+    assert f"hold in {100 * found.joint:.1f} % of the draws where 70 %" in text
+    _, _, _, slope, _, mass = (f"{100 * share:.0f} %" for share in found.shares)
+    assert f"holds in {slope} of the draws" in text and f"mass in {mass}" in text
+    assert f"| {now.slope_capability_deg:.1f}° |" in text and f"| {100 * now.minimum_soc:.0f} % |" in text
+    assert text.count(f"{now.total_mass_kg:.2f} kg") == 2 and f"{19 - now.total_mass_kg:.2f} kg on the mass" in text
+    soft = rdk.evaluate(design, brief.scenario.replace(soil=rdk.soil("sourcebook-trafficability")))
+    assert f"at 35° the slope capability is {soft.slope_capability_deg:.1f}°" in text
+
+
+@pytest.mark.parametrize("name", ["strong", "weak"])
+def test_marks_follow_the_rubric_and_add_up(name):
+    text, _ = report_of(name)
+    notebook = (REPO / "notebooks/16_design_your_rover.ipynb").read_text(encoding="utf-8")
+    marks = re.findall(r"^\| (\w+) \| (\d+) of (\d+) \| .+ \|$", text, re.M)
+    assert [(what, points) for what, _, points in marks] == re.findall(r'"\| (\w+) \| (\d+) \| ', notebook)
+    assert f"**{sum(int(given) for _, given, _ in marks)} of 100**" in text
+    assert all(int(given) <= int(points) for _, given, points in marks)

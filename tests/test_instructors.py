@@ -280,7 +280,7 @@ def test_a_table_holds_no_formula(tmp_path):
 @pytest.fixture(scope="module")
 def given_out(tmp_path_factory):
     folder = tmp_path_factory.mktemp("students") / "handout"
-    instructors.handout(folder)
+    main(["handout", str(folder)])
     return folder
 
 
@@ -305,7 +305,7 @@ def test_a_handout_holds_every_notebook_and_no_solution(given_out):
 
 
 def test_a_handout_has_what_it_needs_and_nothing_of_the_instructors(given_out):
-    assert not [path for path in given_out.rglob("*") if path.name in instructors.OURS]
+    assert not [path for path in given_out.rglob("*") if path.name in (*instructors.OURS, "exemplars")]
     assert "For instructors" not in (given_out / "README.md").read_text(encoding="utf-8")
     done = subprocess.run([sys.executable, "-c", "import drawings, ledger\nfrom exercises import check\n"
                            "assert check('01.1', 2 ** (2 / 3)) and not check('01.1', ...)"], cwd=given_out,

@@ -230,6 +230,30 @@ def test_the_guide_lists_every_notebook_and_puts_each_on_the_course():
         assert word in guide
 
 
+def exercise_minutes(path):
+    """The minutes in the headings of a notebook's exercises; half an hour for a small task, none for the capstone."""
+    words = {"one": 1, "five": 5, "ten": 10, "fifteen": 15, "twenty": 20, "thirty": 30}
+    headings = re.findall(r"^### Exercise \d\d\.\d \((.+)\)$", "\n".join(
+        cell.source for cell in nbformat.read(path, as_version=4).cells), re.M)
+    return sum(0 if heading == "the design" else words[heading.split()[0]] if "minute" in heading else 30
+               for heading in headings)
+
+
+def test_the_load_of_each_week_is_what_its_notebooks_state():
+    guide = (REPO / "notebooks/README.md").read_text(encoding="utf-8")
+    weeks = re.findall(r"^\| (\d) \| (.+?) \| (\d+) \| ([\d.]+) \|", guide, re.M)
+    assert [week for week, *_ in weeks] == list("123456")
+    for week, read, minutes, hours in weeks:
+        fixed, chosen = ([REPO / "notebooks" / name for name in re.findall(r"\((\d\d_\w+\.ipynb)\)", part)]
+                         for part in read.partition("to choose")[::2])
+        reading = {path: int(stated_minutes(path)) for path in fixed + chosen}
+        load = {path: 2 * reading[path] + exercise_minutes(path) for path in fixed + chosen}
+        total = sum(map(load.get, fixed)) + max(map(load.get, chosen), default=0)
+        assert int(minutes) == sum(map(reading.get, fixed)), f"week {week}: minutes of reading"
+        assert float(hours) == round(total / 30) / 2, f"week {week}: {total} minutes in all, in half hours"
+        assert float(hours) <= 5
+
+
 def test_the_title_asks_a_question(notebook):
     assert notebook.cells[0].source.splitlines()[0].rstrip().endswith("?")
 

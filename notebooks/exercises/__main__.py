@@ -28,7 +28,7 @@ def main(arguments=None):
     given = parser.parse_args(arguments)
     try:
         if given.command == "handout":
-            print(f"{given.folder}: {len(instructors.handout(given.folder))} notebooks without solutions")
+            print(f"{given.folder}: {instructors.handout(given.folder)} notebooks without solutions")
         elif given.command == "exam":
             names = instructors.exam(given.numbers, given.students, given.seed, given.to)
             print(f"{given.to}: {len(names)} notebooks")

@@ -37,9 +37,9 @@ def _empty(folder):
 
 
 def handout(folder):
-    """Copy the notebooks without solutions and outputs, and what they need to run, into an empty folder."""
-    folder = _empty(folder)
-    for path in sorted(NOTEBOOKS.glob("[0-9][0-9]_*.ipynb")):
+    """Copy the notebooks without solutions and outputs, and what they need to run, into an empty folder; how many."""
+    folder, paths = _empty(folder), sorted(NOTEBOOKS.glob("[0-9][0-9]_*.ipynb"))
+    for path in paths:
         notebook = nbformat.read(path, as_version=4)
         notebook.cells = [cell for cell in notebook.cells if "solution" not in cell.metadata.get("tags", [])]
         for cell in notebook.cells:
@@ -52,6 +52,7 @@ def handout(folder):
         shutil.copy(NOTEBOOKS / name, folder)
     guide = (NOTEBOOKS / "README.md").read_text(encoding="utf-8").partition("## For instructors")[0]
     (folder / "README.md").write_text(guide.rstrip() + "\n", encoding="utf-8")
+    return len(paths)
 
 
 def students_of(path):
