@@ -48,8 +48,9 @@ def handout(folder):
         nbformat.write(notebook, folder / path.name)
     for part in "drawings", "exercises":
         shutil.copytree(NOTEBOOKS / part, folder / part, ignore=shutil.ignore_patterns("__pycache__", *OURS))
-    for name in "ledger.py", "glossary.md", "departures.md", "app.ipynb":
-        shutil.copy(NOTEBOOKS / name, folder)
+    for pattern in "ledger.py", "glossary.md", "departures.md", "app.ipynb", "*.png":
+        for path in NOTEBOOKS.glob(pattern):
+            shutil.copy(path, folder)
     guide = (NOTEBOOKS / "README.md").read_text(encoding="utf-8").partition("## For instructors")[0]
     (folder / "README.md").write_text(guide.rstrip() + "\n", encoding="utf-8")
     return len(paths)
