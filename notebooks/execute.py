@@ -3,7 +3,6 @@
 Usage, from anywhere: python notebooks/execute.py [01_wheel_on_soil.ipynb ...]    (no name: all of them)
 """
 
-import base64
 import os
 import re
 import sys
@@ -34,8 +33,6 @@ def execute(path):
     describe_pictures(notebook)
     notebook.metadata = METADATA
     nbformat.write(notebook, path)
-    if path.name.startswith("00_"):
-        (FOLDER / "overview.png").write_bytes(last_picture(notebook))
 
 
 def describe_pictures(notebook):
@@ -50,13 +47,6 @@ def describe_pictures(notebook):
                     text = re.sub(r"\[([^\]]*)\]\([^)]*\)|[*`$\\]", r"\1", text)
                     words = re.split(r"(?<=[a-z0-9)°%])\. ", text)[0].rstrip(".") + "."
                 output.metadata = {"image/png": {"alt": words[:1].upper() + words[1:]}}
-
-
-def last_picture(notebook):
-    """Bytes of the last picture in a notebook: that of 00 stands in the README too."""
-    pictures = [output.data["image/png"] for cell in notebook.cells for output in cell.get("outputs", [])
-                if "image/png" in output.get("data", {})]
-    return base64.b64decode(pictures[-1])
 
 
 if __name__ == "__main__":

@@ -172,9 +172,9 @@ def trade_space():
     print(f"pymoo, with answers ready: {free / 1e3:.2f} s")
     scenarios = [rdk.scenario(name) for name in SCENARIOS]
     for label, run in (("study of the four scenarios", lambda: rdk.fronts(scenarios)),
-                       ("intervals, 500 draws", lambda: rdk.intervals(rashid, mare)),
+                       ("intervals, 1,024 draws", lambda: rdk.intervals(rashid, mare)),
                        ("attribution, 2,048 mixtures",
-                        lambda: rdk.attribution(rashid, dataclasses.replace(rdk.rover("Tenacious"), wheel_count=6), mare))):
+                        lambda: rdk.attribution(rashid, rdk.rover("Tenacious").replace(wheel_count=6), mare))):
         run()
         print(f"{label}: {statistics.median(milliseconds(run) for _ in range(3)):.0f} ms")
 

@@ -92,7 +92,8 @@ def test_ledger_of_one_section():
 
 
 def test_a_wrong_model_changes_the_rows_that_rest_on_it_and_no_other(ledger):
-    wrong = paper.paper_ledger(("deterministic",), small_searches(model=rdk.Model(motor_base_mass_kg=0.3))).set_index("id")
+    searches = small_searches(model=rdk.Model(motor_base_mass_kg=0.3))
+    wrong = paper.paper_ledger(("deterministic",), searches).set_index("id")
     lost = wrong.index[ledger.agrees & ~wrong.agrees]
     assert len(lost) > 5 and all(name.startswith("mass_") for name in lost)
 

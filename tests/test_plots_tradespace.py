@@ -46,7 +46,8 @@ def test_weighted_sums_mark_what_is_picked_and_how_often():
 
 def test_ranks_and_crowding_draw_the_box_between_the_neighbours():
     mass, slope = np.array([1.0, 2, 4, 3]), np.array([1.0, 3, 4, 1])
-    left, right = drawings.ranks_and_crowding(mass, slope, np.array([1, 1, 1, 2]), np.array([np.inf, 1.0, np.inf]), 1).axes
+    rank, crowding = np.array([1, 1, 1, 2]), np.array([np.inf, 1.0, np.inf])
+    left, right = drawings.ranks_and_crowding(mass, slope, rank, crowding, 1).axes
     assert_array_equal(by_label(left)["rank 2"], [[3], [1]])
     (box,) = right.patches
     assert box.get_bbox().bounds == (1, 1, 3, 3)

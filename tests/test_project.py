@@ -7,7 +7,6 @@ import sys
 import tomllib
 from pathlib import Path
 
-import nbformat
 import pytest
 import yaml
 from packaging.requirements import Requirement
@@ -44,6 +43,12 @@ def test_ci_runs_the_readmes_test_command():
     program = re.search(r"awk '(.*?)' README\.md", (REPO / ".ci/run").read_text(encoding="utf-8"), re.DOTALL)[1]
     cut = subprocess.check_output(["awk", program, REPO / "README.md"], text=True)
     assert cut == blocks("bash")[1] + "\n"
+
+
+def test_the_linter_is_content():
+    done = subprocess.run([sys.executable, "-m", "ruff", "check", "--no-cache", "--output-format=concise",
+                           REPO], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
 
 
 def test_links_in_the_pages_resolve():
@@ -93,10 +98,3 @@ def test_no_committed_file_names_a_machine_or_a_registry():
             text = path.read_bytes().decode("utf-8", errors="ignore")
             found = re.search(f"{home}|{registry}", text)
             assert not found, (name, text[max(found.start() - 40, 0):found.end() + 40])
-
-
-def test_the_readmes_picture_is_the_one_that_notebook_00_draws():
-    notebook = nbformat.read(REPO / "notebooks/00_start_here.ipynb", as_version=4)
-    sys.path.insert(0, str(REPO / "notebooks"))
-    from execute import last_picture
-    assert (REPO / "notebooks/overview.png").read_bytes() == last_picture(notebook)

@@ -197,7 +197,8 @@ def _wasteful_pct(gain_km=1e-6):
 
 
 EXERCISES["08.2"] = Exercise(
-    "number", _wasteful_pct, "A row of `swapped` is a design of the front; the share of rows with a longer range, times 100.",
+    "number", _wasteful_pct,
+    "A row of `swapped` is a design of the front; the share of rows with a longer range, times 100.",
     {"Those drive no further: they are at the limit already.": lambda: 100 - _wasteful_pct(),
      "As a share; the question asks for percent.": lambda: _wasteful_pct() / 100,
      "That many gain more than a kilometre; any gain counts.": lambda: _wasteful_pct(1.0)}, within=0.01)
