@@ -169,8 +169,8 @@ def ways_on_a_map(figure, terrain, ways, start, goal, shut=None):
         ax.contourf(shut, levels=[0.5, 1.5], colors="none", hatches=["////"])
         ax.contour(shut, levels=[0.5], colors=[BLACK], linewidths=0.6)
     for i, (label, cells) in enumerate(ways.items()):
-        if len(cells):
-            ax.plot(cells[:, 1], cells[:, 0], color="white", lw=4)
+        if len(cells):                                   # one below the other: ways that coincide both show
+            ax.plot(cells[:, 1], cells[:, 0], color="white", lw=4, zorder=1.9)
             ax.plot(cells[:, 1], cells[:, 0], color=COLOURS[i], linestyle=DASHES[i], lw=2.2, label=label)
     for (row, column), marker, label in ((start, "o", "start"), (goal, "*", "goal")):
         ax.plot(column, row, marker=marker, markersize=11, color=ORANGE, markeredgecolor=BLACK, linestyle="none",

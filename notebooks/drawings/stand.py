@@ -47,7 +47,7 @@ def loads_on_slope(slope_deg, centre_height_m, wheelbase_m, *, radius_m=0.1, fig
             ax.plot(*pivot, "o", color=BLACK, ms=6, zorder=4)
         ax.plot(*centre, "o", color=BLACK, ms=8, zorder=6)
         _force(ax, centre, centre - np.array([0, 0.4]), BLACK)
-        ax.text(centre[0] + 0.03, centre[1] - 0.36, "$m g$", fontsize=11, zorder=6)
+        ax.text(centre[0] + 0.03, centre[1] - 0.5, "$m g$", fontsize=11, zorder=6)
         ax.plot([centre[0]] * 2, [centre[1] - 0.4, -1.0], color=GREY, lw=1, linestyle=":", zorder=3)
         ax.set(xlim=(-0.62, 0.62), ylim=(-0.6, 0.75), aspect="equal")
         ax.set_title("four wheels, rigid" if count == 4 else "six wheels, rocker-bogie", fontsize=10)
