@@ -251,7 +251,8 @@ def wheel(result, design, scenario, model, size=SIZE):
     for values, cls, name, dash in ((normal, "c0", "normal", ""), (shear, "c1", "shear", "stroke-dasharray:7 3")):
         axes.line(np.degrees(angle), values, cls, dash)
         top = int(np.abs(values).argmax())
-        axes.names(np.degrees(angle[top:top + 1]), values[top:top + 1] + 0.04 * normal.max(), [name], f"s b f{cls[1]}")
+        axes.names(np.degrees(angle[top:top + 1]), values[top:top + 1] + 0.04 * np.abs(normal).max(), [name],
+                   f"s b f{cls[1]}")
     return svg(width, height, drawn + str(axes), alt(drawn))
 
 

@@ -183,7 +183,7 @@ def wheel_picture(design, performance, scenario, *, model=None, width=300, heigh
                    'load</text>',
                    "The wheel is buried: no contact carries the load.")
     entry, angle, normal, shear = contact(design, performance, scenario, model, 9)
-    longest = 0.3 * height / max(normal.max(), np.abs(shear).max(), 1e-9)
+    longest = 0.3 * height / max(np.abs(normal).max(), np.abs(shear).max(), 1e-9)
     for a, n, t in zip(angle, normal, shear):            # pressed into the soil; shear drags it backwards
         px, py = x + scale * r * np.sin(a), y + scale * r * np.cos(a)
         for cls, dx, dy in (("c0", np.sin(a) * n, np.cos(a) * n), ("c1", -np.cos(a) * t, np.sin(a) * t)):
@@ -201,10 +201,11 @@ def wheel_picture(design, performance, scenario, *, model=None, width=300, heigh
 
 def contact(design, performance, scenario, model, points):
     """Entry angle (rad); angles (rad), normal and shear stress (kPa) along the contact, of shape (points,)."""
-    entry = np.arccos(1 - performance.sinkage_m / design.wheel_radius_m)
-    angle = np.linspace(0, entry, points)
-    c1, c2 = model.transition
-    found = terramechanics.contact_stress(
-        design.wheel, scenario.soil, entry, performance.slip, angle, transition_c1=c1, transition_c2=c2,
-        grouser_lift_cap=model.grouser_lift_cap, shear_scale=model.shear_scale)
-    return entry, angle, found.normal_stress_pa / 1000, found.shear_stress_pa / 1000
+    options = {name: getattr(model, name) for name in terramechanics.OPTIONS}
+    load = (performance.total_mass_kg * model.gravity_m_s2 * np.cos(np.radians(scenario.slope_deg))
+            / design.wheel_count)
+    forces = terramechanics.wheel_forces(design.wheel, scenario.soil, load, performance.slip, **options)
+    angle = np.linspace(0, forces.entry_angle_rad, points)
+    found = terramechanics.contact_stress(design.wheel, scenario.soil, forces.entry_angle_rad, performance.slip, angle,
+                                          stress_level=forces.stress_level, **options)
+    return forces.entry_angle_rad, angle, found.normal_stress_pa / 1000, found.shear_stress_pa / 1000

@@ -191,6 +191,10 @@ def test_the_answer_is_in_sight(explorer):
             for found in explorer.locator(part).locator("visible=true").all()[:5]:
                 bounds = found.bounding_box()
                 assert 0 <= bounds["y"] and bounds["y"] + bounds["height"] <= height, (width, part, bounds)
+        crowded = """e => [...e.querySelectorAll('.rdk-help i')].filter(i => i.offsetParent
+            && i.getBoundingClientRect().right > i.closest('.rdk-row').children[1].getBoundingClientRect().left)
+            .map(i => i.parentNode.textContent)"""
+        assert not explorer.evaluate(crowded), width     # the sign for help beside its slider, not on it
     box(explorer, "peak_wheel_torque_nm").scroll_into_view_if_needed()       # far down on a phone
     assert explorer.locator(".rdk-say1").bounding_box()["y"] >= 0
 

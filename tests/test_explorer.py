@@ -23,7 +23,7 @@ from rdk.explorer import Explorer, answers, page
 from rdk.explorer import app as explorer_module
 from rdk.explorer.inputs import DESIGN, MISSION, NUMBERS, OWN, SCRIPTS, SOIL, VIEWS
 from rdk.explorer.worker import Refresher
-from rdk.rover_picture import failing, rover_picture, wheel_picture
+from rdk.rover_picture import contact, failing, rover_picture, wheel_picture
 
 MARE, POLAR = "equatorial_mare_traverse", "polar_prospecting"
 CANONICAL = rdk.scenario_names("canonical")
@@ -485,6 +485,21 @@ def test_what_fails_is_marked_on_the_drawing():
         assert (' bad"' in picture) == bool(found)
     plain = rover_picture(rover)
     assert ' bad"' not in plain and "100 mm radius" in sound(plain)
+
+
+@pytest.mark.parametrize("kernel", ["paper", "imposed-arc"])
+@pytest.mark.parametrize("slope_deg", [0, 20])
+def test_the_stresses_drawn_carry_and_turn_the_wheel(kernel, slope_deg):
+    design, mission, model = rdk.rover("Rashid-1"), rdk.scenario(MARE).replace(slope_deg=slope_deg), rdk.Model(
+        kernel=kernel)
+    result = rdk.evaluate(design, mission, model=model)
+    entry, angle, normal, shear = contact(design, result, mission, model, 2001)
+    area = 1000 * design.wheel_radius_m * design.wheel_width_m
+    load = result.total_mass_kg * model.gravity_m_s2 * np.cos(np.radians(slope_deg)) / design.wheel_count
+    found = area * np.array([np.trapezoid(normal * np.cos(angle) + shear * np.sin(angle), angle),
+                             np.trapezoid(shear, angle) * design.wheel_radius_m])
+    np.testing.assert_allclose(found, [load, result.wheel_torque_nm], rtol=1e-5)       # trapezoids, kink at theta_m
+    assert f"over {np.degrees(entry):.0f} degrees" in sound(wheel_picture(design, result, mission, model=model))
 
 
 def test_the_drawing_is_to_scale():
