@@ -8,6 +8,7 @@ import numpy as np
 
 from .design import DESIGN_SPACE, Model, Scenario
 from .mission import evaluate
+from .pictures import label
 from .sampling import replaced
 from .sky import Skyline
 from .terramechanics import Soil
@@ -134,7 +135,7 @@ def verdict(design, scenario, performance, model=Model()):
         (f"cannot climb a step of {1000 * scenario.required_obstacle_height_m:.0f} mm",
          p.obstacle_capability_m >= scenario.required_obstacle_height_m)) if not holds]
     missed = [words for metric, sign, least in scenario.problem.constraints for words, value in
-              [(f"misses {metric.rsplit('_', 1)[0].replace('_', ' ')} {sign} {least:g}", float(getattr(p, metric)))]
+              [(f"misses {label(metric)[0]} {sign} {least:g} {label(metric)[1]}".rstrip(), float(getattr(p, metric)))]
               if not (value >= least if sign == ">=" else value <= least) and not (metric == "range_km" and value <= 0)]
     words = [drive, *bad, *missed]
     return bool(p.range_km > 0 and not bad

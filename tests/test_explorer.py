@@ -400,6 +400,15 @@ def test_corners_of_the_design_and_of_the_mission_box_are_explained():
         explained(design, rdk.Scenario(name="corner", soil=rdk.soil(chance.choice(rdk.soil_names())), **values))
 
 
+def test_a_missed_demand_is_named_in_full():
+    """`minimum_soc` ends in no unit: nothing may be cut off it."""
+    rover, mare = rdk.rover("Rashid-1"), rdk.scenario(MARE)
+    demands = ("minimum_soc", ">=", 2), ("total_mass_kg", "<=", 1)
+    mission = mare.replace(problem=rdk.Problem(constraints=demands))
+    met, sentence = explain.verdict(rover, mission, rdk.evaluate(rover, mission))
+    assert not met and sentence.endswith("misses lowest charge >= 2, and misses mass <= 1 kg.")
+
+
 def test_binding_finds_each_cause_and_levers_what_helps():
     rover, mare = rdk.rover("Rashid-1"), rdk.scenario(MARE)
     d = dataclasses.replace
