@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from . import catalog
 from .design import DESIGN_SPACE, Model, Scenario
 from .mission import evaluate
 from .pictures import label
@@ -226,23 +227,28 @@ def as_python(design, scenario, model, *calls, baseline=None):
     """
     changed = {f.name: getattr(model, f.name) for f in dataclasses.fields(Model) if getattr(model, f.name) != f.default}
     mission = {f.name: getattr(scenario, f.name) for f in dataclasses.fields(Scenario)
-               if f.name not in ("soil", "problem", "skyline") and getattr(scenario, f.name) != f.default}
-    more = ["    soil=soil,"]
-    if scenario.skyline is not None:
-        sky = scenario.skyline
-        more.append(f"    skyline=rdk.sky.Skyline({sky.azimuth_deg.tolist()!r}, {sky.elevation_deg.tolist()!r}),")
+               if f.name not in ("soil", "problem") and getattr(scenario, f.name) != f.default}
     soil = {f.name: getattr(scenario.soil, f.name) for f in dataclasses.fields(Soil)}
     rovers = {"design": design} | ({} if baseline is None else {"baseline": baseline})
     parts = [_built(name, "Design", {n: getattr(rover, n) for n in DESIGN_SPACE}) for name, rover in rovers.items()]
-    parts += [_built("soil", "Soil", soil), _built("mission", "Scenario", mission, *more),
+    parts += [_built("soil", "Soil", soil), _built("mission", "Scenario", mission, "    soil=soil,"),
               _built("model", "Model", changed)]
     return "\n".join(["import rdk", "", *parts, *calls, ""])
+
+
+def site_of(skyline):
+    """Name and height (m) of the tabulated site whose skyline this is; None where it is no such site's."""
+    site, height = skyline.name.partition(",")[0], skyline.height_m
+    known = site in (sites := catalog.skyline_sites()) and height in sites[site]["heights_m"]
+    return (site, int(height)) if known and skyline == catalog.skyline(site, height) else None
 
 
 def _built(name, kind, values, *more):
     """Source of `name = rdk.kind(...)`; infinity has no literal in Python, nor has a skyline."""
     def literal(value):
         if isinstance(value, Skyline):
+            if site := site_of(value):
+                return "rdk.skyline({!r}, {})".format(*site)
             return f"rdk.sky.Skyline({value.azimuth_deg.tolist()}, {value.elevation_deg.tolist()})"
         return f"float({str(value)!r})" if value in (np.inf, -np.inf) else repr(value)
 

@@ -191,7 +191,7 @@ def log(result, scenario, soc_initial=1.0, size=SIZE, ghosts=()):
                       "stroke-width:1.2;stroke-dasharray:3 3")
         distance.parts.append(text(width - 57, distance.y(other.distance_km[-1]) + 4, name, "s b f" + cls[1]))
     charge.line(days, 100 * start(log.soc, soc_initial), "c0")
-    distance.frame("Distance", "km", "Earth days after sunrise", count=3)
+    distance.frame("Distance", "km", f"Earth days after {scenario.start_utc or 'sunrise'}", count=3)
     if limit <= 1.08 * top:
         distance.parts.append(f'<path class="a" stroke-dasharray="6 4" d="M44 {distance.y(limit):.1f}H{width - 62}"/>'
                               + text(48, distance.y(limit) + 12, "end of the route", "q s"))

@@ -290,7 +290,8 @@ def _side_by_side(designs, scenario, draws, model):
 def _mission_words(scenario):
     name = scenario.name.replace("_", " ")
     return (f"Mission: {name}, latitude {scenario.latitude_deg:g} deg, {scenario.duration_earth_days:g} Earth "
-            f"days from sunrise, slopes of {scenario.slope_deg:g} deg in {scenario.soil.name or 'some soil'}, "
+            f"days from {scenario.start_utc or 'sunrise'}, slopes of {scenario.slope_deg:g} deg in "
+            f"{scenario.soil.name or 'some soil'}, "
             f"driving {100 * scenario.duty_cycle:g} % of the time, payload {scenario.payload_mass_kg:g} kg, "
             f"{scenario.payload_power_w:g} W, panel tilt {scenario.panel_tilt_deg:g} deg, range limit "
             f"{scenario.traverse_limit_km:g} km.")

@@ -319,8 +319,19 @@ def test_a_reload_loses_nothing(page, app):
     box(explorer, "battery_capacity_wh").fill("77")
     box(explorer, "battery_capacity_wh").press("Enter")
     expect(page).to_have_url(re.compile("battery_capacity_wh=77"))
+    tab(explorer, "mission")
+    explorer.locator("summary", has_text="site and date").click()
+    explorer.locator('select[data-in="site"]').select_option("shackleton_rim")
+    for text, value in ("2026-11-26T12:00", "2026-11-26T12:00"), ("soon", "2026-11-26T12:00"):
+        box(explorer, "start_utc").fill(text)
+        box(explorer, "start_utc").press("Enter")
+        expect(box(explorer, "start_utc")).to_have_value(value)
+    expect(explorer.locator(".rdk-drawer")).to_contain_text("must be an ISO date")
+    expect(box(explorer, "latitude_deg")).to_have_value("-89.78")
     page.reload()
     expect(box(explorer, "battery_capacity_wh")).to_have_value("77")
+    expect(box(explorer, "start_utc")).to_have_value("2026-11-26T12:00")
+    expect(explorer.locator('select[data-in="site"]')).to_have_value("shackleton_rim")
     expect(explorer.locator(".rdk-picture svg").first).to_have_attribute("aria-label", re.compile("^Bars of mass"))
 
 

@@ -360,6 +360,40 @@ def test_a_link_brings_everything_back(explorer):
     assert "wheel_width_m must be" in shown(wrong, "drawer")
 
 
+def test_site_and_date_bring_the_real_sun_and_go_everywhere(explorer):
+    explorer.set(mission=POLAR)
+    events(explorer, ["choose", "site", "shackleton_rim"], ["choose", "site_height_m", "10"],
+           ["type", "start_utc", " 2026-11-26T12:00 "])
+    assert_current(explorer)
+    place = catalog.skyline_sites()["shackleton_rim"]
+    wanted = rdk.scenario(POLAR).replace(
+        name=OWN, skyline=rdk.skyline("shackleton_rim", 10), start_utc="2026-11-26T12:00",
+        latitude_deg=place["latitude_deg"], longitude_deg=place["longitude_deg"])
+    assert explorer.scenario == wanted and "from 2026-11-26T12:00" in told(explorer)["t"]["summary"]
+    assert "after 2026-11-26T12:00" in explorer.parts["picture"].value
+    again = Explorer(state=explorer.link)                # a link carries demands, not goals
+    assert again.scenario.replace(problem=wanted.problem) == wanted and again.state["site_height_m"] == 10
+    kept, space = explorer.file("design.json"), {}
+    exec(explorer.python(), space)
+    assert space["result"].range_km == explorer.result.range_km and "skyline('shackleton_rim', 10)" in explorer.python()
+    assert space["mission"].skyline == wanted.skyline
+    events(explorer, ["type", "start_utc", "next week"])
+    assert "start must be an ISO date" in shown(explorer, "drawer") and explorer.scenario == wanted
+    events(explorer, ["type", "latitude_deg", "-80"])
+    assert explorer.state["site"] == "none" and "site set to none" in shown(explorer, "drawer")
+    explorer.undo()
+    assert explorer.scenario == wanted
+    for _ in range(3):
+        explorer.undo()
+    assert explorer.scenario == rdk.scenario(POLAR)
+    explorer.load("design.json", kept)
+    assert explorer.scenario == wanted and explorer.state["site"] == "shackleton_rim"
+    own = wanted.replace(skyline=[1.0, 2.0, 3.0], name="own hills")
+    assert Explorer(scenario=own).scenario == own and Explorer(scenario=own).state["site"] == OWN
+    explorer.set(site="none", start_utc="none")
+    assert explorer.scenario.skyline is None and explorer.scenario.start_utc is None
+
+
 # ---- words ----------------------------------------------------------------------------------------------------
 
 def explained(design, mission):

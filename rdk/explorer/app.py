@@ -134,9 +134,10 @@ class Explorer(State):
             self.set(**{name: NUMBERS[name].at(position)})
 
     def _on_type(self, name, text):
-        value, said = NUMBERS[name].read(text)
+        value, said = NUMBERS[name].read(text) if name in NUMBERS else (text, "")
         self.set(**{name: value})
-        self._notice = ("status", said)
+        if said:
+            self._notice = ("status", said)
 
     def _on_choose(self, name, text):
         self.set(**{name: next((value for value in self.menus[name] if str(value) == text), text)})
@@ -330,12 +331,12 @@ class Explorer(State):
             mission = f"Mission: {place(m.latitude_deg)}, {m.slope_deg:g}°"
             texts = {"mission": mission, "status": self._status, "share": link,
                      "summary": f"{place(m.latitude_deg)}, {m.duration_earth_days:g} "
-                     f"days from sunrise, {m.slope_deg:g}° in {m.soil.name}; drives {100 * m.duty_cycle:g} % of the "
-                     f"time, route {route}."}
+                     f"days from {m.start_utc or 'sunrise'}, {m.slope_deg:g}° in {m.soil.name}; drives "
+                     f"{100 * m.duty_cycle:g} % of the time, route {route}."}
+            chosen = {name: str(now[name]) for name in (*self.menus, "start_utc")}
             off = {"undo": not self._past, "redo": not self._future, "run": bool(self._thread),
                    "lightest": bool(self._thread), "cancel": not self._thread}
-            told = {"ack": self._heard, "v": numbers, "c": {name: str(now[name]) for name in self.menus}, "t": texts,
-                    "off": off,
+            told = {"ack": self._heard, "v": numbers, "c": chosen, "t": texts, "off": off,
                     "p": (done, of, bool(self._thread)), "link": link, "share": link, "busy": busy}
             (role, notice), (head, body) = self._notice, self._drawer
         said = f'<div role="{role}">{html.escape(notice)}</div>' if notice else ""

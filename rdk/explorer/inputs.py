@@ -12,6 +12,7 @@ import numpy as np
 
 from .. import catalog, pictures
 from ..design import DESIGN_SPACE, Model, Scenario
+from ..sky import julian_date
 
 STEPS = 120                                              # positions of a logarithmic slider
 
@@ -171,9 +172,10 @@ METRICS = ("range_km", "total_mass_kg", "slope_capability_deg", "energy_balance_
            "obstacle_capability_m")
 VIEWS = {"log": "Mission log", "mass": "Mass", "wheel": "Wheel", "fleet": "Fleet", "why": "Why", "sweep": "Sweep",
          "optimise": "Optimise"}
-OWN, START = "your own", "the design at the start"
+OWN, START, NONE = "your own", "the design at the start", "none"
+SKY = "site", "site_height_m", "start_utc"
 SCRIPTS = ("the readings", "why", "the sweep", "the front")
-RESTORED = (*DESIGN, "wheel_count", *COEFFICIENTS, "preset", *MISSION, *SOIL, *DEMANDS, *GOALS)
+RESTORED = (*DESIGN, "wheel_count", *COEFFICIENTS, "preset", *MISSION, *SKY, *SOIL, *DEMANDS, *GOALS)
 """What undo brings back and a link carries."""
 
 
@@ -185,7 +187,7 @@ def title(name):
 
 def place(latitude_deg):
     """A latitude in words."""
-    return "equator" if latitude_deg == 0 else f"{abs(latitude_deg):g}° {'S' if latitude_deg < 0 else 'N'}"
+    return "equator" if latitude_deg == 0 else f"{abs(latitude_deg):.4g}° {'S' if latitude_deg < 0 else 'N'}"
 
 
 def choices():
@@ -199,6 +201,9 @@ def choices():
     return {"rover": {name: name for name in (*catalog.rover_names(), OWN)},
             "mission": {name: title(name) for name in (*catalog.scenario_names(), OWN)},
             "soil": {name: name for name in (*catalog.soil_names(), OWN)},
+            "site": {NONE: "none: level horizon", OWN: OWN,
+                     **{name: name.replace("_", " ") for name in catalog.skyline_sites()}},
+            "site_height_m": {1: "1 m up", 2: "2 m up", 10: "10 m up"},
             "wheel_count": {4: "4 wheels", 6: "6 wheels"}, "survive": {0: "may freeze", 1: "must survive"},
             "preset": presets, "view": VIEWS,
             "baseline": {name: name for name in (START, *catalog.rover_names())}, "why_metric": metrics,
@@ -224,10 +229,20 @@ def check(name, value, menus):
         if not isinstance(value, (str, int, float)) or value not in menus[name]:
             raise ValueError(f"{name} must be one of {', '.join(map(str, menus[name]))}; got {value!r}")
         return value
+    if name == "start_utc":
+        text = str(value).strip()
+        if text.lower() in ("", NONE):
+            return NONE
+        try:
+            julian_date(text)
+        except ValueError:
+            raise ValueError("the start must be an ISO date and time in UTC, such as 2026-11-26T12:00, or “none”; got "
+                             f"“{text[:40]}”") from None
+        return text
     if name not in NUMBERS:
         near = difflib.get_close_matches(str(name), [*NUMBERS, *menus], 1)
         raise ValueError(f"no input {name!r}" + (f"; did you mean {near[0]!r}?" if near else "")
-                         + f" Choose from {', '.join([*NUMBERS, *menus])}")
+                         + f" Choose from {', '.join([*NUMBERS, *menus, 'start_utc'])}")
     field = NUMBERS[name]
     whole = field.step == 1 and field.unit == ""
     good = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
@@ -249,7 +264,7 @@ def from_text(text):
     found = {}
     for name, value in parse_qsl(text.strip().lstrip("?")):
         try:
-            kind = float if name in NUMBERS else int if name in ("wheel_count", "survive") else str
+            kind = float if name in NUMBERS else int if name in ("wheel_count", "survive", "site_height_m") else str
             found[name] = kind(value)
         except ValueError:
             raise ValueError(f"the link says {name}={value[:40]!r}, which is no number") from None

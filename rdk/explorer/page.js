@@ -11,6 +11,7 @@ const send = (...event) => {
 };
 const pages = () => all('[data-tab]').forEach(t => { const on = t.dataset.tab === (tab || 'rover');
     t.setAttribute('aria-selected', on); t.tabIndex = on ? 0 : -1; one(`[data-page=${t.dataset.tab}]`).hidden = !on; });
+const put = (box, words) => { if (!box.dataset.typing) box.value = words; };          /* what is being typed stays */
 const apply = () => {
     const holder = one('.rdk-data [data-state]'); if (!holder || holder.dataset.state === seen) return;
     seen = holder.dataset.state; const d = JSON.parse(seen); acked = d.ack;
@@ -18,12 +19,12 @@ const apply = () => {
     if (acked >= last) {
         for (const [name, [at, words, tick, moved]] of Object.entries(d.v)) {
             const range = one(`[type=range][data-in=${name}]`), box = one(`.rdk-box[data-in=${name}]`);
-            range.value = at; range.setAttribute('aria-valuetext', words + ' ' + range.dataset.unit); box.value = words;
+            range.value = at; range.setAttribute('aria-valuetext', words + ' ' + range.dataset.unit); put(box, words);
             range.previousSibling.style.setProperty('--at', tick); one(`[data-do="reset:${name}"]`).style.visibility =
                 moved ? '' : 'hidden';
         }
         for (const [name, value] of Object.entries(d.c)) {
-            all(`select[data-in=${name}]`).forEach(s => s.value = value);
+            all(`:is(select, .rdk-box)[data-in=${name}]`).forEach(s => put(s, value));
             all(`[data-name=${name}]`).forEach(b => b.setAttribute('aria-pressed', b.dataset.value === value));
         }
         all('[data-view]').forEach(t => { const on = t.dataset.view === d.c.view; t.setAttribute('aria-selected', on);
@@ -46,8 +47,9 @@ new MutationObserver(() => { apply(); deliver();
         if (again) again.focus(); }
 }).observe(root, {subtree: true, childList: true});
 root.addEventListener('input', e => { const i = e.target; if (i.type === 'range') send('slide', i.dataset.in,
-    +i.value); });
-root.addEventListener('change', e => { const i = e.target;
+    +i.value); else if (i.matches('.rdk-box')) i.dataset.typing = 1; });
+root.addEventListener('focusout', e => { delete e.target.dataset.typing; });
+root.addEventListener('change', e => { const i = e.target; delete i.dataset.typing;
     if (i.type === 'file') { const file = i.files[0]; if (file) file.text().then(text => {
         send('do', 'load', file.name, text); i.value = ''; }); }
     else if (i.matches('.rdk-box')) send('type', i.dataset.in, i.value);

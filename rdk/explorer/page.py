@@ -104,6 +104,12 @@ def left(menus):
                + menu("soil", "soil", menus["soil"]) + group("Work", work) + group("Demands", list(DEMANDS)[:-1])
                + segments("survive", menus["survive"], "survival of heat and cold")
                + more.format("array" + ", speed limit" * ("maximum_speed_m_s" in rest), "".join(map(row, rest)))
+               + more.format("site and date", menu("site", "site", menus["site"])
+                             + menu("site_height_m", "array", menus["site_height_m"])
+                             + '<label class="rdk-menu"><span>start (UTC)</span><input class="rdk-box" type="text" '
+                             'autocomplete="off" data-in="start_utc"></label><p class="rdk-say">A site sets latitude '
+                             'and skyline. A start such as 2026-11-26T12:00 brings the real sun; “none” the paper\'s, '
+                             'which rises at the start.</p>')
                + more.format("numbers of the soil", "".join(map(row, SOIL))))
     return ('<nav role="tablist" aria-label="inputs"><button type="button" role="tab" data-tab="rover">Rover</button>'
             '<button type="button" role="tab" data-tab="mission"><span data-text="mission"></span></button></nav>'

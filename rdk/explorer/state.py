@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import base64
 import dataclasses
+import functools
 import math
 import threading
 import time
@@ -16,11 +17,13 @@ from ..report import report
 from ..terramechanics import Soil
 from ..tradespace import Front
 from . import answers
-from .inputs import (COEFFICIENTS, DEMANDS, DESIGN, GOALS, MISSION, NUMBERS, OWN, RESTORED, SOIL, START, check, choices,
-                     from_text, title, to_text)
+from .inputs import (COEFFICIENTS, DEMANDS, DESIGN, GOALS, MISSION, NONE, NUMBERS, OWN, RESTORED, SKY, SOIL, START,
+                     check, choices, from_text, title, to_text)
 
 PINS = ("A", "c1", "#c04a00"), ("B", "c2", "#007a59"), ("C", "c3", "#6a7488")
 PAST = 200                                               # states that undo remembers
+FIRST = "rover", "mission", "preset", "site"             # of a link: the values come after the names
+skyline = functools.cache(catalog.skyline)
 
 
 class State:
@@ -70,7 +73,11 @@ class State:
     @property
     def scenario(self):
         """The Scenario that the inputs show; its problem holds the demands and goals."""
-        mission = dataclasses.replace(self._guest, name=OWN, soil=self.soil, problem=self._posed(),
+        site, start = catalog.skyline_sites().get(self.state["site"]), self.state["start_utc"]
+        sky = {} if self.state["site"] == OWN else {"skyline": None} if site is None else {
+            "skyline": skyline(self.state["site"], self.state["site_height_m"]), "longitude_deg": site["longitude_deg"]}
+        mission = dataclasses.replace(self._guest, name=OWN, soil=self.soil, problem=self._posed(), **sky,
+                                      start_utc=None if start == NONE else start,
                                       **{name: self.state[name] for name in MISSION})
         names = dict.fromkeys((self._guest.name, *self._catalogue))
         known = (dataclasses.replace(mission, name=name) for name in names)
@@ -157,10 +164,18 @@ class State:
             limits = {(metric, sign): limit for metric, sign, limit in mission.problem.constraints}
             found |= {name: getattr(mission, name) for name in MISSION} | {name: getattr(mission.soil, name)
                                                                            for name in SOIL}
+            found |= dict(zip(SKY, (*self._site(mission), mission.start_utc or NONE)))
             found |= {name: limits.get((metric, sign), 0 if sign == ">=" else math.inf) for name,
                       (metric, sign, _) in DEMANDS.items()}
             found |= {goal: mission.problem.objectives.get(metric, "ignore") for goal, metric in GOALS.items()}
         return found
+
+    def _site(self, mission):
+        """Name and height of the site whose skyline a mission has."""
+        if mission.skyline is None:
+            return NONE, 2
+        site, height = explain.site_of(mission.skyline) or (OWN, 2)
+        return (site if site == OWN or mission.longitude_deg == mission.skyline.longitude_deg else OWN), height
 
     def _posed(self):
         """The problem that demands and goals pose; demands on what has no slider stay."""
@@ -181,6 +196,9 @@ class State:
             self._put(mission=self._catalogue[value])
         elif name == "soil" and value != OWN:
             self.state |= {n: getattr(self._soils[value], n) for n in SOIL}
+        elif name == "site" and value in (sites := catalog.skyline_sites()):
+            self._assign("latitude_deg", sites[value]["latitude_deg"])
+            self.state["site"] = value
         elif name == "preset":
             self._model = Model() if value == "paper" else Model.engineering()
             self.state |= {n: getattr(self._model, n) for n in COEFFICIENTS} | {"preset": value}
@@ -188,6 +206,10 @@ class State:
             noon = 0.0 if self.state["latitude_deg"] < 0 else 180.0
             if name == "latitude_deg" and self.state["panel_azimuth_deg"] == noon:
                 self.state["panel_azimuth_deg"] = 0.0 if value < 0 else 180.0        # the array follows the noon sun
+            site = catalog.skyline_sites().get(self.state["site"])
+            if name == "latitude_deg" and site is not None and value != site["latitude_deg"]:
+                self._notice = ("status", "site set to none: its skyline holds at its own latitude only")
+                self.state["site"] = NONE
             self.state[name] = value
 
     def _name(self):
@@ -195,6 +217,8 @@ class State:
         design, mission = self.design, self.scenario
         self.state["rover"] = next((name for name, known in self._rovers.items() if known == design), OWN)
         self.state["mission"] = mission.name if mission.name in self._catalogue else OWN
+        if self.state["site"] == OWN and self._guest.skyline is None:
+            self.state["site"] = NONE
         self.state["soil"] = next((name for name, known in self._soils.items() if known == mission.soil), OWN)
 
     def _put(self, design=None, mission=None, note=""):
@@ -249,9 +273,8 @@ class State:
         with self._lock:
             self._remember(("link",))
             found = from_text(text)
-            for name in sorted(found, key=lambda n: n not in ("rover", "mission",
-                                                              "preset")):        # the values after the names
-                if name in NUMBERS or name in self.menus:
+            for name in sorted(found, key=lambda n: FIRST.index(n) if n in FIRST else len(FIRST)):
+                if name in NUMBERS or name in self.menus or name in SKY:
                     try:
                         self._assign(name, check(name, found[name], self.menus))
                     except ValueError as error:
