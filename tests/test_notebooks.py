@@ -76,8 +76,7 @@ def prose(notebook):
 
 
 def test_the_collection_is_numbered_in_order():
-    numbers = [int(path.name[:2]) for path in PATHS]     # beyond the paper's twelve a number may still be free
-    assert numbers == sorted(set(numbers)) and numbers[:12] == list(range(12))
+    assert [path.name[:2] for path in PATHS] == [f"{number:02d}" for number in range(17)]
 
 
 def test_executed_in_order_and_clean(path, notebook, code):

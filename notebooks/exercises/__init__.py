@@ -3,13 +3,13 @@
 An exercise computes its answer with `rdk`, independently of the notebooks; no answer is stored. Typical
 mistakes are computed too, each with the hint meant for it. A hint names what went wrong and does not give the
 answer away. The exercises are grouped by notebook: `wheel` (00 to 02), `vehicle` (03 to 05), `designs` (06 to 08),
-`trust` (09 to 11), `stand` (13), `site` (14, 15), `capstone`. How an answer is judged is in `judging`.
+`trust` (09 to 11), `sizing` (12), `stand` (13), `site` (14, 15), `capstone`. How an answer is judged is in `judging`.
 """
-from . import capstone, designs, site, stand, trust, vehicle, wheel
+from . import capstone, designs, site, sizing, stand, trust, vehicle, wheel
 from .judging import UNITS, Exercise, Verdict, judge  # noqa: F401
 
-EXERCISES = dict(**wheel.EXERCISES, **vehicle.EXERCISES, **designs.EXERCISES, **trust.EXERCISES, **stand.EXERCISES,
-                 **site.EXERCISES, **capstone.EXERCISES)
+EXERCISES = dict(**wheel.EXERCISES, **vehicle.EXERCISES, **designs.EXERCISES, **trust.EXERCISES, **sizing.EXERCISES,
+                 **stand.EXERCISES, **site.EXERCISES, **capstone.EXERCISES)
 """Every exercise by its number; a number given twice is an error here."""
 
 
