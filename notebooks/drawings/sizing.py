@@ -17,8 +17,9 @@ def sizing_flow():
 
     def box(x, y, width, title, text="", colour=BLACK, face="white"):
         ax.add_patch(plt.Rectangle((x, y), width, 1.1, fc=face, ec=colour, lw=1.4))
-        ax.text(x + width / 2, y + (0.78 if text else 0.55), title, ha="center", va="center", fontsize=10, weight="bold")
-        ax.text(x + width / 2, y + 0.34, text, ha="center", va="center", fontsize=8.5, linespacing=1.25)
+        middle = dict(x=x + width / 2, ha="center", va="center")
+        ax.text(y=y + (0.78 if text else 0.55), s=title, fontsize=10, weight="bold", **middle)
+        ax.text(y=y + 0.34, s=text, fontsize=8.5, linespacing=1.25, **middle)
 
     def arrow(*points, dash="-"):
         ax.plot(*zip(*points), color=BLACK, lw=1.4, linestyle=dash)
