@@ -152,10 +152,11 @@ def _slope(patch, weight, slip, limit_deg, theta_w):
     at_high = np.log(np.hypot(weight, flat) / weight)
     low = high - 2 * at_high / (2 * patch.n + 1) - 0.01  # load and pull fall about as theta_s^(2 n + 1)
     at_low = miss(low, every)
-    if (at_low > 0).any():
-        low = np.where(at_low > 0, high - 20, low)
+    if (at_low > 0).any():                               # cohesion pulls: its force falls about as theta_s squared
+        low = np.where(at_low > 0, np.maximum(high - 2 * at_high - 0.5, np.log(1e-5)), low)
         at_low = miss(low, every)
     x = root(miss, low, high, at_low, at_high, high - at_high * (high - low) / (at_high - at_low))
+    x = np.where(at_low > 0, low, x)                     # so light that it climbs a wall
     load, pull = pulled(x, every)
     alpha[lane] = np.nan_to_num(np.clip(np.degrees(np.arctan2(pull, load)), 0, limit_deg[lane]))
     return alpha

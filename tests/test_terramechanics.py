@@ -434,6 +434,10 @@ def test_slope_capability_is_cut_at_its_limit():
     np.testing.assert_array_equal(slope_capability(WHEEL, friction, 8.0, capability_limit_deg=20),
                                   np.minimum(free, 20))
     assert slope_capability(WHEEL, MARE, 8.0, capability_slip=-0.5) == 0  # a braking wheel climbs nothing
+    sticky = dataclasses.replace(MARE, cohesion_kpa=2.0)                  # cohesion alone pulls a light wheel up
+    for kernel in KERNELS:
+        light = slope_capability(WHEEL, sticky, [0.001, 0.1, 2.0], kernel=kernel)
+        np.testing.assert_array_equal(light, 35)
 
 
 def test_climb_is_slip_balance_and_slope_capability():
