@@ -55,7 +55,7 @@ def inputs_at(points: np.ndarray, scenario: Scenario, *, model: Model = Model(),
         if name not in nominal:
             raise unknown("table: Soil and Model have no field", name, list(nominal))
         rows = [row for row in table if row["name"] == name and _counts(row, nominal[name], model)]
-        weight = np.array([float(row.get("weight") or 1) for row in rows])
+        weight = check(f"table: weight of {name}", [_entry(row, "weight", 1.0) for row in rows], above=0)
         edges = np.cumsum(weight) / weight.sum() if rows else weight
         which, value = np.searchsorted(edges[:-1], u, side="right"), np.full(len(u), float(nominal[name]))
         for i, row in enumerate(rows):
@@ -81,7 +81,9 @@ def _quantile(row, u, nominal):
     if kind not in ("factor", "offset", "value") or shape not in ("normal", "lognormal", "uniform"):
         raise ValueError(f"table: {row['name']} must be a factor, offset or value, normal, lognormal or uniform; got "
                          f"{kind!r}, {shape!r}")
-    ends = np.array([float(row["low"]), float(row["high"])])
+    ends = np.array([_entry(row, "low"), _entry(row, "high")])
+    if not ends[0] <= ends[1]:
+        raise ValueError(f"table: low of {row['name']} must be at most high; got {row['low']!r} and {row['high']!r}")
     if shape == "lognormal":
         check(f"table: low and high of {row['name']}", ends, above=0)
         ends = np.log(ends)
@@ -89,7 +91,16 @@ def _quantile(row, u, nominal):
     drawn = ends[0] + np.diff(ends) * (u if shape == "uniform" else 0.5 + ndtri(u) / ndtri(0.95) / 2)
     drawn = np.exp(drawn) if shape == "lognormal" else drawn
     value = {"factor": nominal * drawn, "offset": nominal + drawn, "value": drawn}[kind]
-    return np.clip(value, float(row["minimum"] or -math.inf), float(row["maximum"] or math.inf))
+    return np.clip(value, _entry(row, "minimum", -math.inf), _entry(row, "maximum", math.inf))
+
+
+def _entry(row, key, default=None):
+    """A number of a row; the default where it has none."""
+    value = row.get(key)
+    try:
+        return float(default if value in (None, "") else value)
+    except (TypeError, ValueError):
+        raise ValueError(f"table: {key} of {row['name']} must be a number; got {value!r}") from None
 
 
 def interval_coverage(*, draws: int = DRAWS, seed: int = 0, level: float = 0.9, spread: float | None = None,

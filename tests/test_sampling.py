@@ -359,6 +359,9 @@ def test_a_speed_without_limit_stays_infinite_downhill():
     (dict(table=[row("shear_scale", 0.9, 1.1, kind="percent")]), "shear_scale must be a factor, offset or value"),
     (dict(table=[row("shear_scale", 0.9, 1.1, distribution="beta")]), "got 'factor', 'beta'"),
     (dict(table=[row("shear_scale", -2, -1)]), "shear_scale must be positive"),
+    (dict(table=[row("shear_scale", 1, 2) | {"weight": 0}]), "weight of shear_scale must be positive"),
+    (dict(table=[row("shear_scale", 2, 1)]), "low of shear_scale must be at most high"),
+    (dict(table=[row("shear_scale", "some", 1)]), "low of shear_scale must be a number; got 'some'"),
     (dict(model=rdk.Model(shear_scale=[1, 2])), r"single model; got shapes \(\), \(\) and \(2,\)"),
     (dict(scenario=replace(MARE, slope_deg=[1, 2])), "single scenario")])
 def test_bad_intervals_are_named(changed, words):
@@ -459,6 +462,14 @@ def test_a_mixture_and_a_condition_by_hand():
     assert inputs_at(u, MARE, model=rdk.Model(kernel="imposed-arc"), table=other)["cohesion_kpa"][-1] > 1.99
     with pytest.raises(ValueError, match="when of cohesion_kpa must be empty or from="):
         inputs_at(u, MARE, table=[row("cohesion_kpa", 1, 2) | {"when": "weekend"}])
+
+
+def test_a_row_may_hold_numbers_and_leave_out_what_it_does_not_need():
+    plain = dict(name="cohesion_kpa", kind="value", distribution="uniform", low=-1, high=1)
+    u = np.array([[0.0], [0.25], [1.0]])
+    np.testing.assert_allclose(inputs_at(u, MARE, table=[plain])["cohesion_kpa"], [-1, -0.5, 1], atol=1e-8)  # 2^-32
+    cut = inputs_at(u, MARE, table=[plain | {"minimum": 0, "maximum": None}])
+    np.testing.assert_allclose(cut["cohesion_kpa"], [0, 0, 1], atol=1e-8)
 
 
 def test_a_lognormal_row_gives_its_5_and_95_percent_points():
