@@ -111,11 +111,14 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
     height, (rows, columns) = terrain.height_m, terrain.height_m.shape
     tilt_limit, edge_limit = (check(name, value, 0, 90, scalar=True) for name, value in (
         ("tilt_limit_deg", tilt_limit_deg), ("edge_limit_deg", edge_limit_deg)))
-    detour = np.broadcast_to(check("detour", detour, 1), height.shape)
-    ends = [tuple(int(i) for i in end) for end in (start, goal)]
-    for name, (row, column) in zip(("start", "goal"), ends):
-        if not (0 <= row < rows and 0 <= column < columns):
-            raise ValueError(f"{name} must be a cell (row, column) of the {rows} x {columns} map; got {(row, column)}")
+    detour, ends = check("detour", detour, 1), []
+    if np.shape(detour) not in ((), height.shape):
+        raise ValueError(f"detour must be one number or have the map's shape {height.shape}; got {np.shape(detour)}")
+    detour = np.broadcast_to(detour, height.shape)
+    for name, end in (("start", start), ("goal", goal)):
+        if np.shape(end) != (2,) or not all(i in range(n) for i, n in zip(end, height.shape)):
+            raise ValueError(f"{name} must be a cell (row, column) of the {rows} x {columns} map; got {end!r}")
+        ends.append((int(end[0]), int(end[1])))
     tilt, index = terrain.slope(), np.arange(rows * columns, dtype=np.int32).reshape(rows, columns)
     safe, edges = tilt <= tilt_limit, []
     for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):            # each pair of neighbours once, driven both ways
@@ -313,15 +316,16 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
             break
     distances, stored, solar, load, modes = (np.array(values) for values in zip(*log))
     time, arrived = time[:len(log)], distance >= way.distance_m[-1]
-    arrival = np.where(arrived, time[np.argmax(distances >= way.distance_m[-1], axis=0)], np.inf)
+    ended_h = time[np.argmax(distances >= end, axis=0)]
+    arrival = np.where(arrived, ended_h, np.inf)
     messages = [_sentence(way, time, *of_lane) for of_lane in zip(
-        distance, arrival, lost, end, (solar > 0).T, (modes != EMPTY).T)]
+        distance, arrival, lost, end, ended_h, (solar > 0).T, (modes != EMPTY).T)]
     pick = ... if lanes else (..., 0)                    # a single one comes without its column
     return March(time, *(values[pick] for values in (distances, stored, solar, load, modes)), arrival[pick][()],
                  np.where(arrived, np.inf, distance)[pick][()], messages if lanes else messages[0])
 
 
-def _sentence(way, time, distance, arrival_h, lost, end_m, sunny, alive):
+def _sentence(way, time, distance, arrival_h, lost, end_m, ended_h, sunny, alive):
     """Where one lane of a march ended, and why."""
     if np.isfinite(arrival_h):
         return f"arrives after {arrival_h:.1f} h"
@@ -332,5 +336,5 @@ def _sentence(way, time, distance, arrival_h, lost, end_m, sunny, alive):
         return f"{until}{last:.1f} h: pack empty, {dark:.1f} h after the last sun"
     if distance >= end_m:
         slope = way.slope_deg[np.searchsorted(way.distance_m, end_m, "right") - 1]
-        return f"{until}{time[-1]:.1f} h: the wheels do not hold the slope of {slope:.1f} deg ahead"
+        return f"{until}{ended_h:.1f} h: the wheels do not hold the slope of {slope:.1f} deg ahead"
     return f"still at {distance:.0f} m of {way.distance_m[-1]:.0f} m after {time[-1]:.1f} h"

@@ -182,6 +182,8 @@ def test_a_map_without_a_way_says_so():
 
 @pytest.mark.parametrize("change, words", [
     (dict(start=(6, 0)), "start must be a cell .* of the 6 x 8 map"), (dict(goal=(0, -1)), "goal must be a cell"),
+    (dict(start=(0.5, 0)), "start must be a cell"), (dict(goal=3), "goal must be a cell"),
+    (dict(detour=np.ones((2, 2))), r"detour must .* have the map's shape \(6, 8\)"),
     (dict(tilt_limit_deg=-1), "tilt_limit_deg"), (dict(edge_limit_deg="steep"), "edge_limit_deg"),
     (dict(detour=0.5), "detour must be at least 1"), (dict(joule_per_m=lambda s: s - 1), "must not be negative")])
 def test_bad_requests_are_refused(change, words):
@@ -275,6 +277,8 @@ def test_a_slope_that_the_wheels_do_not_hold_strands():
     march = route.march(way, ROVER, SUNNY, follow_sun=True)
     assert march.stranded_m == 300.0 and march.message.startswith("stranded at 300 m")
     assert "do not hold the slope of 34.0 deg" in march.message and march.hours("stalled") == 0.25
+    both = route.march(way, ROVER, replace(SUNNY, maximum_speed_m_s=[0.05, 0.01]), follow_sun=True)
+    assert both.message[0] == march.message              # however long the other takes
 
 
 def test_science_takes_its_time_and_power():
