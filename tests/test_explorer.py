@@ -716,17 +716,17 @@ def test_a_random_walk_keeps_working_and_keeps_no_memory(explorer):
                 assert_current(explorer)
         assert_current(explorer)
 
-    walk(70, ["log", "mass", "wheel", "fleet", "why", "sweep"])
+    walk(50, ["log", "mass", "wheel", "fleet", "why", "sweep"])
     explorer._past.clear()
     tracemalloc.start()                                  # slows the walk down: only for its end
     try:
-        walk(4, ["log", "mass"])
+        walk(3, ["log", "mass"])
         before = tracemalloc.get_traced_memory()[0]
-        walk(12, ["log", "mass"])
+        walk(8, ["log", "mass"])
         grown = tracemalloc.get_traced_memory()[0] - before
     finally:
         tracemalloc.stop()
-    assert grown < 3e5                                   # a picture kept a move would be 0.5 MB
+    assert grown < 2e5                                   # a picture kept a move would be 0.33 MB
 
 
 # ---- fronts and solutions -------------------------------------------------------------------------------------
@@ -865,13 +865,13 @@ def test_the_live_front_follows_the_mission(explorer):
     explorer.set(view="optimise", live=True)
     explorer.settle()
     fronts = [explorer.front]
-    for values in {"latitude_deg": -60}, {"slope_deg": 5}, {"soil": "apollo-loose"}:
+    for values in {"latitude_deg": -60}, {"slope_deg": 5, "soil": "apollo-loose"}:
         explorer.set(**values)
         assert_current(explorer)
         fronts.append(explorer.front)
         assert fronts[-1] is not fronts[-2] and len(fronts[-1])
         assert fronts[-1].scenario == dataclasses.replace(explorer.scenario, problem=Problem())
-    assert [len(front.objective_history) for front in fronts] == [24, 12, 12, 12]    # half: each starts from the last
+    assert [len(front.objective_history) for front in fronts] == [24, 12, 12]    # half: each starts from the last
     explorer.set(wheel_radius_m=0.15)                    # the design is no part of the mission
     explorer.settle()
     assert explorer.front is fronts[-1]
@@ -901,23 +901,30 @@ def test_solve_finds_the_nearest_value_that_meets_the_demands(explorer):
         explorer.solve("slope_deg")
 
 
-def test_the_lightest_rover_for_the_demands_comes_onto_the_sliders(explorer):
+def test_the_lightest_rover_for_the_demands_comes_onto_the_sliders(explorer, monkeypatch):
+    calls, size = [], rdk.size
+    monkeypatch.setattr(explorer_module, "size", lambda *given, **more: calls.append(
+        (given, size(*given, **more))) or calls[-1][1])
     explorer.set(mission=POLAR, minimum_range_km=8.0, minimum_slope_deg=22.0, view="mass")
     explorer.lightest(wait=True)
-    wanted = rdk.size(explorer.scenario, [("feasible", ">=", 1), *explorer.scenario.problem.constraints])
+    ((asked, demands), wanted), = calls
+    assert asked.replace(problem=explorer.scenario.problem) == explorer.scenario
+    assert demands == [("feasible", ">=", 1), *explorer.scenario.problem.constraints]
     assert explorer.design == wanted.design and explorer.result.range_km >= 8
     assert f"lightest: {wanted.performance.total_mass_kg:.2f} kg" in shown(explorer, "drawer")
     assert "all demands hold in" in told(explorer)["t"]["status"]
     assert_current(explorer)
     events(explorer, ["do", "undo"])
     assert explorer.design == rdk.rover("Rashid-1")
-    explorer.set(maximum_mass_kg=1.0)
-    explorer.lightest(wait=True)                         # the demands conflict
+    missed = dataclasses.replace(wanted, message="the demands conflict")
+    monkeypatch.setattr(explorer_module, "size", lambda *given, **more: missed)      # tests of `size` bring that about
+    explorer.lightest(wait=True)
+    assert "the demands conflict" in shown(explorer, "drawer")
     assert 'role="alert"' in explorer.parts["drawer"].value
 
 
 def test_the_program_ends_while_a_search_runs():
-    code = ("import rdk; e = rdk.Explorer(); e.set(generations=1000, population=400, view='optimise');"
+    code = ("import rdk; e = rdk.Explorer(); e.set(generations=1000, population=60, view='optimise');"
             "e.optimise(); e.set(slope_deg=3); print('end')")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout, done.stderr) == (0, "end\n", "")
