@@ -123,6 +123,34 @@ def test_the_trade_moves_one_thing_at_a_time_within_the_limits():
     lighter = rdk.evaluate(design, brief.scenario).total_mass_kg
     np.testing.assert_allclose(table.loc["chassis_mass_kg", "mass (kg)"], heavier - lighter, rtol=1e-12)   # rounding
     assert table.loc["grousers (height, count)", "mass (kg)"] > 0        # from none: both grow
+    larger = design.replace(wheel_radius_m=table.loc["wheel_radius_m", "to"])
+    asked = rdk.evaluate(larger, brief.scenario).wheel_torque_nm
+    np.testing.assert_allclose(table.loc["wheel_radius_m", "torque to spare (N m)"],
+                               design.peak_wheel_torque_nm - asked, rtol=1e-9)     # a difference of near numbers
+
+
+def test_what_the_notebook_says_of_the_lightest_rover_and_of_the_doubts():
+    brief = BRIEFS["swirl"]
+    lightest = rdk.size(brief.scenario, brief.demands, bounds=brief.limits).design
+    draws = rdk.intervals(lightest, brief.scenario, draws=8192, seed=1).draws      # not the judge's draws
+    assert (draws.wheel_torque_nm > lightest.peak_wheel_torque_nm).mean() > 0.5 and (draws.range_km == 0).mean() > 0.5
+    bought = capstone.trade(lightest, brief)
+    assert bought["all together (points)"].idxmax() == "peak_wheel_torque_nm"
+    losers = bought[bought["all together (points)"] < -1]
+    assert set(losers.index) == {"wheel_radius_m", "chassis_mass_kg"} and (losers["torque to spare (N m)"] < 0).all()
+    mine = brief.guess.replace(grouser_count=20, grouser_height_m=0.015)
+    soil = brief.scenario.soil
+    weaker = brief.scenario.replace(soil=soil.replace(friction_angle_deg=soil.friction_angle_deg - 8))
+    now, weak, dusty, slow, poor = (rdk.evaluate(mine, where, model=rdk.Model(**changed)) for where, changed in (
+        (brief.scenario, {}), (weaker, {}), (brief.scenario, {"dust_factor": 0.6}),
+        (brief.scenario, {"hub_no_load_speed_rad_s": 3.3}), (brief.scenario, {"battery_specific_energy_wh_kg": 96})))
+    assert {found.minimum_soc for found in (now, weak, dusty, slow, poor)} == {0.15}
+    text = (REPO / "notebooks/16_design_your_rover.ipynb").read_text(encoding="utf-8")
+    for words in (f"{now.unserved_h:.0f} as it stands, {dusty.unserved_h:.0f} with a third of the power lost",
+                  f"takes {now.slope_capability_deg - weak.slope_capability_deg:.1f}° of slope capability",
+                  f"add {poor.total_mass_kg - now.total_mass_kg:.2f} kg"):
+        assert words in text
+    assert 0.6 < slow.cruise_speed_m_s / now.cruise_speed_m_s < 0.7 and slow.range_km == now.range_km == 20
 
 
 # ---- exemplars -------------------------------------------------------------------------------------------------

@@ -108,7 +108,7 @@ def judged(design, brief, draws=DRAWS, seed=SEED):
 def compare(designs, brief, draws=DRAWS):
     """Candidates side by side, a pandas DataFrame of text: values, shares of draws, joint share, mass to spare.
 
-    `designs` is a dictionary of name to Design.
+    `designs` is a dictionary of name to Design. The rows are those of `brief.judged`: obstacle and `feasible` first.
     """
     import pandas as pd
     columns = {}
@@ -127,7 +127,7 @@ def compare(designs, brief, draws=DRAWS):
 
 
 def trade(design, brief, step=0.1, draws=2048):
-    """What a step of each variable does to mass and joint share, and points for a kilogram; a pandas DataFrame.
+    """What a step of each variable does to mass, joint share and hub torque to spare; a pandas DataFrame.
 
     Each grows by `step` of its value, grousers by two and 2 mm at least, none beyond the limits of the brief; wheel
     count and wheelbase stay.
@@ -146,10 +146,12 @@ def trade(design, brief, step=0.1, draws=2048):
     values["grouser_count"] = np.rint(values["grouser_count"])
     designs = Design(**values)
     share = 100 * intervals(designs, brief.scenario, draws=draws, seed=SEED).share(brief.judged)
-    mass = evaluate(designs, brief.scenario).total_mass_kg
+    found = evaluate(designs, brief.scenario)
+    mass, spare = found.total_mass_kg, designs.peak_wheel_torque_nm - found.wheel_torque_nm
     table = pd.DataFrame({"to": [values[name][row] for row, name in enumerate(names, 1)],
                           "mass (kg)": mass[1:] - mass[0], "all together (points)": share[1:] - share[0]}, names)
     table["points for a kg"] = table["all together (points)"] / table["mass (kg)"].where(table["mass (kg)"] > 1e-9)
+    table["torque to spare (N m)"] = spare[1:]
     return table.rename(index={"grouser_height_m": "grousers (height, count)"})
 
 
