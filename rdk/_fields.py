@@ -39,7 +39,7 @@ def _allowed(minimum, maximum, above, below, whole, choices, infinite, optional,
         bounds = [f"above {above:g}" if above is not None else f"at least {minimum:g}" if minimum > -math.inf else "",
                   f"below {below:g}" if below is not None else f"at most {maximum:g}" if maximum < math.inf else ""]
         span = " and ".join(filter(None, bounds))
-    words = ", ".join(filter(None, [kind, span]))
+    words = ", ".join(filter(None, [kind, span])) or "a number" * infinite
     return (words if kind or infinite else " and ".join(filter(None, [words, "finite"]))) + optional * " or None"
 
 
@@ -55,17 +55,19 @@ def check(name, value, minimum=-math.inf, maximum=math.inf, **limits):
         return None
 
     def refusal(value):
-        return ValueError(f"{name} must be {_allowed(**limits)}; got {value}")
+        return ValueError(f"{name} must be {_allowed(**limits)}; got {value:.200}")
 
     if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
         raise refusal(repr(value))
-    if any(isinstance(part, np.ma.MaskedArray) for part in (value if isinstance(value, (list, tuple)) else [value])):
+    listed = isinstance(value, (list, tuple))
+    if any(isinstance(part, np.ma.MaskedArray) for part in (value if listed else [value])):
         raise refusal("a masked array: fill or drop what is masked")
     try:
         array = np.asarray(value)
     except ValueError:                                   # nested lists of unequal length
         raise refusal(repr(value)) from None
-    if array.dtype.kind not in "iuf":
+    if array.dtype.kind not in "iuf" or listed and any(
+            isinstance(part, (bool, np.bool_)) for part in np.asarray(value, object).flat):
         raise refusal(repr(value))
     array = array.astype(float)                          # a copy: the caller's array may change later
     if limits["scalar"] and array.ndim:
@@ -115,7 +117,15 @@ def require(**kinds):
     for name, (value, kind) in kinds.items():
         if not isinstance(value, kind):
             got = repr(value) if isinstance(value, str) else type(value).__name__
-            raise TypeError(f"{name} must be a {kind.__name__}, such as {kind.example}; got {got}")
+            such = f", such as {kind.example}" if getattr(kind, "example", "") else ""
+            raise TypeError(f"{name} must be a {kind.__name__}{such}; got {got:.200}")
+
+
+def brief(result):
+    """Repr of a named tuple or dataclass of numbers: long arrays and tuples by their ends."""
+    names = getattr(result, "_fields", None) or _names(type(result))
+    with np.printoptions(threshold=6, edgeitems=2):
+        return f"{type(result).__name__}({', '.join(f'{name}={getattr(result, name)!r:.120}' for name in names)})"
 
 
 class Shown:
@@ -189,6 +199,7 @@ class Record(Shown):
         cls.__doc__ = _documented(cls)
 
     def __post_init__(self):
+        require(name=(getattr(self, "name", ""), str))
         for name, limits in limits_of(type(self)).items():
             object.__setattr__(self, name, check(name, getattr(self, name), **limits))
         shapes = {}
@@ -213,6 +224,13 @@ class Record(Shown):
                 value.flags.writeable = False
         vars(record).update(fields, _shape=shape)
         return record
+
+    def __setstate__(self, state):
+        """A record copied or read by pickle: its arrays are read-only again."""
+        for value in state.values():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+        vars(self).update(state)
 
     def numbers(self, prefix=""):
         """Names and values of every numeric field, those of nested records with a prefix."""

@@ -89,7 +89,7 @@ def _read(kind, row, names, file_name, label, **more):
 
 def _pick(file_name, kind, key, name):
     found = {row[key]: row for row in _rows(file_name, DATA)}
-    if name not in found:
+    if not isinstance(name, str) or name not in found:
         raise unknown(f"no {kind}", name, found)
     return found[name]
 
@@ -133,6 +133,7 @@ def scenario(name: str) -> Scenario:
 
 def at_latitude(scenario: Scenario, latitude_deg: float) -> Scenario:
     """A scenario moved to a latitude, its panel tilted by min(80, |latitude|) degrees towards the noon sun."""
+    require(scenario=(scenario, Scenario))
     return dataclasses.replace(scenario, latitude_deg=latitude_deg, panel_tilt_deg=min(80.0, abs(latitude_deg)),
                                panel_azimuth_deg=0.0 if latitude_deg < 0 else 180.0)
 
@@ -163,7 +164,7 @@ def rover(name: str) -> Design:
 def rover_row(name: str) -> dict:
     """The full row of a published rover's design vector: published mass, payload, sources."""
     vectors = {row["rover"]: row for row in _rows("rovers.csv", DATA) if row["use"] == "design vector"}
-    if name not in vectors:
+    if not isinstance(name, str) or name not in vectors:
         raise unknown("no rover", name, vectors)
     return dict(vectors[name])
 
@@ -194,9 +195,9 @@ def skyline(site: str, height_m: float = 2) -> Skyline:
     <Skyline connecting_ridge_spot_1, 10 m: -3.9 to -0.9 deg>
     """
     sites = skyline_sites()
-    if site not in sites:
+    if not isinstance(site, str) or site not in sites:
         raise unknown("no site", site, sites)
-    if isinstance(height_m, str) or height_m not in sites[site]["heights_m"]:
+    if not np.isscalar(height_m) or height_m not in sites[site]["heights_m"]:
         heights = ", ".join(f"{height:g}" for height in sites[site]["heights_m"])
         raise ValueError(f"height_m of a tabulated skyline must be one of {heights}; got {height_m!r}")
     rows = _rows("skylines.csv", DATA)
@@ -236,16 +237,7 @@ def from_json(text: str) -> tuple[Design, Scenario | None]:
 
     ValueError if the text is not such a file, a name stands there twice or is unknown, or a value is not allowed.
     """
-    def once(pairs):
-        for name, _ in pairs:
-            if sum(name == other for other, _ in pairs) > 1:
-                raise ValueError(f"{name!r} stands there twice")
-        return dict(pairs)
-
-    try:
-        kept = json.loads(text.lstrip("\ufeff"), object_pairs_hook=once)
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"not a JSON file: {error}") from None
+    kept = read_json(text)
     if not isinstance(kept, dict) or kept.get("format") != "rdk-design-1" or not isinstance(kept.get("design"), dict):
         raise ValueError("not a design kept by rdk: it needs 'format': 'rdk-design-1' and a 'design'")
     for old, name in _ALIASES.items():
@@ -260,9 +252,10 @@ def from_json(text: str) -> tuple[Design, Scenario | None]:
     try:
         values["soil"] = Soil(**_fields(Soil, values["soil"], "soil"))
         if "problem" in values:
-            posed = {name: _number(value) for name, value in _fields(Problem, values["problem"], "problem").items()}
-            demands = tuple((name, sign, _number(limit)) for name, sign, limit in posed.get("constraints", ()))
-            values["problem"] = Problem(**posed | {"constraints": demands})
+            posed = _fields(Problem, values["problem"], "problem")
+            demands = {"constraints": [[_number(part) for part in demand] for demand in posed["constraints"]]
+                       } if "constraints" in posed else {}
+            values["problem"] = Problem(**posed | demands)
         if values.get("skyline") is not None:
             values["skyline"] = Skyline(**_fields(Skyline, values["skyline"], "skyline"))
         scenario = Scenario(**values)
@@ -271,6 +264,26 @@ def from_json(text: str) -> tuple[Design, Scenario | None]:
     if scenario.shape:
         raise ValueError("the file's scenario must hold single numbers")
     return design, scenario
+
+
+def read_json(text: str):
+    """What a JSON text holds, with or without a byte-order mark; ValueError where a name stands there twice."""
+    def once(pairs):
+        for name, _ in pairs:
+            if sum(name == other for other, _ in pairs) > 1:
+                raise ValueError(f"{name!r} stands there twice")
+        return dict(pairs)
+
+    try:
+        return json.loads(_text(text), object_pairs_hook=once)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"not a JSON file: {error}") from None
+
+
+def _text(text):
+    """The text of a file without its byte-order mark."""
+    require(text=(text, str))
+    return text.lstrip("\ufeff")
 
 
 def _number(value):
@@ -294,7 +307,7 @@ def to_csv(design: Design, performance: Record | None = None) -> str:
 
     The performance may be on several missions: it broadcasts with the design.
     """
-    require(design=(design, Design))
+    require(design=(design, Design), **{} if performance is None else {"performance": (performance, Record)})
     columns = design.numbers() | ({} if performance is None else performance.numbers())
     shape = together(design=design.shape, performance=() if performance is None else performance.shape)
     file = io.StringIO()
@@ -310,8 +323,8 @@ def from_csv(text: str) -> Design:
     Columns are separated by commas, or by semicolons or tabs: then decimal commas are read, too. More columns may
     stand there. ValueError if a column is missing or stands there twice, or a value is not a number or not allowed.
     """
-    lines = text.lstrip("\ufeff").lstrip().splitlines(keepends=True)
-    if lines and re.fullmatch(r"sep=.\s*", lines[0]):
+    lines = [line for line in io.StringIO(_text(text), newline=None) if line.strip(" ,;\t\n")]
+    if lines and re.fullmatch(r'"?sep=."?\s*', lines[0], re.IGNORECASE):
         lines = lines[1:]                                # a spreadsheet's hint
     separator = max(",;\t", key=lines[0].count) if lines else ","
     try:

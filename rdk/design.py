@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._fields import Record, described, number, together
+from ._fields import Record, check, described, number, require, together
 from .sky import Skyline, julian_date
 from .terramechanics import KernelOptions, Soil, Wheel
 
@@ -66,27 +66,47 @@ DESIGN_SPACE = {f.name: f.metadata["axis"] for f in fields(Design)}
 
 
 @dataclass(frozen=True)
-class Problem:
+class Problem(Record):
     """How a scenario is posed to the optimiser; the defaults are the paper's for its traverse missions.
 
     `objectives` has Performance fields with a direction, "max" or "min"; `constraints` triples of Performance field,
     ">=" or "<=", and limit; `traverse_limit_km` replaces the scenario's own limit during the search; `seed` is that of
     the paper's run.
     """
+    example = "rdk.Problem()"
     objectives: dict = field(default_factory=lambda: {"range_km": "max", "total_mass_kg": "min",
                                                       "slope_capability_deg": "max"})
     constraints: tuple = (("range_km", ">=", 0.1),)
-    traverse_limit_km: float | None = None
-    seed: int | None = None
+    traverse_limit_km: float | None = number(0, infinite=True, scalar=True, optional=True, default=None)
+    seed: int | None = number(0, whole=True, scalar=True, optional=True, default=None)
 
-    def __hash__(self):
-        return hash((*self.objectives.items(), *map(tuple, self.constraints), self.traverse_limit_km, self.seed))
+    def __post_init__(self):
+        if not (isinstance(self.objectives, dict) and self.objectives
+                and set(map(str, self.objectives.values())) <= {"max", "min"}):
+            raise ValueError(f"objectives must be a dictionary like {{'range_km': 'max'}}; got {self.objectives!r:.80}")
+        if not (isinstance(self.constraints, (list, tuple)) and all(
+                isinstance(c, (list, tuple)) and len(c) == 3 and c[1] in (">=", "<=") for c in self.constraints)):
+            raise ValueError(f"constraints must be like ('range_km', '>=', 0.1) each; got {self.constraints!r:.80}")
+        demands = tuple((name, sign, check(f"limit of {name}", limit, infinite=True, scalar=True))
+                        for name, sign, limit in self.constraints)
+        object.__setattr__(self, "constraints", demands)
+        super().__post_init__()
+
+    def _key(self):
+        return tuple(self.objectives.items()), self.constraints, self.traverse_limit_km, self.seed
+
+    def _summary(self):
+        import pandas as pd
+        words = [*(f"{way} {name}" for name, way in self.objectives.items()),
+                 *(f"{name} {sign} {limit:g}" for name, sign, limit in self.constraints)]
+        return f"Problem: limit {self.traverse_limit_km} km, seed {self.seed}", pd.DataFrame({"asked": words})
 
 
 @dataclass(frozen=True)
 class Scenario(Record):
     """Where a rover drives, for how long, and what it must carry."""
     example = "rdk.scenario('polar_prospecting')"
+    apart = ("problem",)
 
     name: str = described("A label; nothing is computed from it.")
     latitude_deg: float = number(-90, 90, doc="North positive.")
@@ -122,6 +142,7 @@ class Scenario(Record):
             object.__setattr__(self, "skyline", Skyline.of(self.skyline))
         if not isinstance(self.soil, Soil):
             raise ValueError(f"soil must be a Soil, such as rdk.soil('apollo-nominal'); got {self.soil!r}")
+        require(problem=(self.problem, Problem))
         super().__post_init__()
 
 

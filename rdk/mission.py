@@ -96,7 +96,8 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
     warn_outside(design)
     with np.errstate(all="ignore"):                      # a lane without a solution is infeasible, not a warning
         mass = mass_of(design, scenario, model)
-        weight = mass.total_kg * model.gravity_m_s2 / design.wheel_count         # load and pull shared equally
+        # load and pull are shared equally; a mass beyond all floats is buried, no error
+        weight = np.fmin(mass.total_kg * model.gravity_m_s2 / design.wheel_count, 1e300)
         balance, capability = terramechanics.climb(
             design.wheel, scenario.soil, weight, scenario.slope_deg, slip_min=model.slip_min, slip_max=model.slip_max,
             capability_slip=model.slope_capability_slip, capability_limit_deg=model.slope_capability_limit_deg,

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from . import catalog, mission, power, sky
-from ._fields import Real, check
+from ._fields import Real, brief, check, require
 from .design import Design, Model, Scenario
 from .terrain import Terrain
 
@@ -27,6 +27,7 @@ def per_metre(design: Design, scenario: Scenario, slope_deg: Real, *, model: Mod
     The slope, uphill positive, broadcasts with the design; soil, payload and `maximum_speed_m_s` of the scenario count.
     Both are infinite where the rover stalls or slides.
     """
+    require(design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     short = scenario.replace(slope_deg=slope_deg, duration_earth_days=model.time_step_h / 24)    # one step to march
     now = mission.evaluate(design, short, model=model)
     droop = 1 - model.motor_droop * np.clip(now.wheel_torque_nm / np.asarray(design.peak_wheel_torque_nm), 0, 1)
@@ -43,6 +44,7 @@ def cost(design: Design, scenario: Scenario, *, model: Model = Model()) -> Calla
 
     One design; the function interpolates a table in steps of 0.5 deg and is infinite beyond 34.5 deg.
     """
+    require(design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     if design.shape or scenario.shape:
         raise ValueError("cost needs one design and one scenario; a way is one rover's")
     slope = np.arange(-34.5, 34.75, 0.5)
@@ -106,6 +108,7 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
     detour : float or ndarray, shape of the map
         Length driven over length gained, at least 1.
     """
+    require(terrain=(terrain, Terrain))
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
     height, (rows, columns) = terrain.height_m, terrain.height_m.shape
@@ -151,7 +154,7 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
 
 # ---- the march along it ----------------------------------------------------------------------------------------
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Way:
     """What a march needs of a way: the map's distance of its points from the start, their places, the slope between.
 
@@ -163,7 +166,9 @@ class Way:
     latitude_deg: np.ndarray
     longitude_deg: np.ndarray
     skyline_m: tuple = ()
-    skylines: tuple = field(default=(), repr=False)
+    skylines: tuple = ()
+
+    __repr__ = brief
 
     @property
     def ground_m(self) -> np.ndarray:
@@ -174,6 +179,7 @@ class Way:
 def along(terrain: Terrain, cells: np.ndarray, *, skyline_every_m: float | None = None, height_m: float = 1.0,
           beyond: tuple[Terrain, ...] = ()) -> Way:
     """The Way through cells of a map; with `skyline_every_m` it looks around at that spacing and at the end."""
+    require(terrain=(terrain, Terrain))
     cells = np.asarray(cells)
     x, y = terrain.place(cells[:, 0], cells[:, 1])
     run = np.hypot(np.diff(x), np.diff(y))
@@ -196,7 +202,7 @@ def ridge() -> Way:
                tuple(sky.Skyline(azimuth, [float(row[name]) for row in table]) for name in places))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class March:
     """What became of a rover on its way, step by step; arrays with one column a lane, or none for one lane.
 
@@ -212,6 +218,8 @@ class March:
     arrival_h: float
     stranded_m: float
     message: str
+
+    __repr__ = brief
 
     def hours(self, mode: str) -> float | np.ndarray:
         """Hours spent in one of `MODES`."""
@@ -238,6 +246,7 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     detour : float
         Length driven over length of the way, as from `detour_factor`.
     """
+    require(way=(way, Way), design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     if scenario.start_utc is None:
         raise ValueError("a march needs the real sun: give the scenario a start_utc, such as '2026-10-01'")
     check("rest_soc", rest_soc, np.max(model.soc_floor), go_soc), check("go_soc", go_soc, rest_soc, 1)

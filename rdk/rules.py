@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from . import catalog
-from ._fields import check, unknown
+from ._fields import check, require, unknown
 from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import evaluate, mass_of
 from .sampling import METRICS, decode, replaced
@@ -71,6 +71,8 @@ def front_statistics(fronts: Iterable[Front]) -> pd.DataFrame:
 
 def place(designs: Design, name: str) -> np.ndarray:
     """Where a variable lies in its searched range, 0 to 1."""
+    if name not in DESIGN_SPACE:
+        raise unknown("no design variable", name, list(DESIGN_SPACE))
     variable = DESIGN_SPACE[name]
     return (getattr(designs, name) - variable.low) / (variable.high - variable.low)
 
@@ -128,6 +130,7 @@ def ballasted(designs: Design, scenario: Scenario, total_mass_kg, *, model: Mode
     Where even the lightest chassis of the design space is too heavy, that chassis is taken and the design stays heavier
     than wanted. The scenario gives the payload.
     """
+    require(designs=(designs, Design), scenario=(scenario, Scenario), model=(model, Model))
     light = dataclasses.replace(designs, chassis_mass_kg=DESIGN_SPACE["chassis_mass_kg"].low)
     heavy = dataclasses.replace(designs, chassis_mass_kg=DESIGN_SPACE["chassis_mass_kg"].low + 1)
     lightest = mass_of(light, scenario, model).total_kg
@@ -143,10 +146,11 @@ def swapped(front: Front, **changes: float) -> pd.DataFrame:
     values (`old_...`), and by how much range, mass and slope capability change (`range_change_km`, `mass_change_kg`,
     `slope_change_deg`).
     """
+    require(front=(front, Front))
     old = front.performance
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)     # the ballast may be a chassis outside the class
-        changed = dataclasses.replace(front.designs, **changes)
+        changed = front.designs.replace(**changes)
         new = evaluate(ballasted(changed, front.scenario, old.total_mass_kg, model=front.model), front.scenario,
                        model=front.model)
     return pd.DataFrame(dict(

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import power
-from ._fields import Real, check
+from ._fields import Real, Record, check
 
 SUN_RADIUS_DEG = 0.2666                                  # mean; 0.262 to 0.271 through the year
 TT_MINUS_UTC_S = 69.184                                  # since 2017; one second less before
@@ -41,6 +41,8 @@ class Skyline:
         if not (np.all(np.diff(azimuth) > 0) and azimuth[-1] - azimuth[0] < 360):
             raise ValueError(f"azimuth_deg must rise within one turn; got {azimuth[0]:g} to {azimuth[-1]:g}")
         vars(self).update(azimuth_deg=azimuth, elevation_deg=elevation)
+
+    __setstate__ = Record.__setstate__                   # a copy's arrays are read-only too
 
     @classmethod
     def of(cls, value: Skyline | ArrayLike) -> Skyline:

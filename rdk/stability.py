@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._fields import check, together
+from ._fields import brief, check, together
 from .terramechanics import Soil, Wheel, wheel_forces
 
 Values = float | np.ndarray
@@ -26,6 +26,8 @@ class AxleLoads(NamedTuple):
     middle_n: Values
     rear_n: Values
 
+    __repr__ = brief
+
 
 class TipOver(NamedTuple):
     """Slopes in degrees at which a standing rover tips over: facing up, facing down, across the slope."""
@@ -33,12 +35,16 @@ class TipOver(NamedTuple):
     downhill_deg: Values
     sideways_deg: Values
 
+    __repr__ = brief
+
 
 class Stance(NamedTuple):
     """Track, height of the belly (less the sinkage: the clearance) and of the centre of mass, in metres."""
     track_m: Values
     belly_height_m: Values
     centre_height_m: Values
+
+    __repr__ = brief
 
 
 def axle_loads(mass_kg: Values, wheelbase_m: Values, centre_height_m: Values, slope_deg: Values, *, wheel_count: Values,

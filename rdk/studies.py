@@ -4,12 +4,12 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable
 
-from ._fields import check
+from ._fields import check, require
 from .design import Model, Scenario
 from .tradespace import Front, budget, pareto_front
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Case:
     """One front of `fronts`: everything that `pareto_front` needs, so that it can run anywhere."""
     scenario: Scenario
@@ -20,6 +20,10 @@ class Case:
     generations: int | str
     start: str | None
     model: Model
+
+    def __repr__(self):
+        return (f"Case({self.scenario.name!r}, seed={self.seed}, shear_scale={self.shear_scale:g}, "
+                f"obstacle_height_m={self.obstacle_height_m:g})")
 
     def run(self) -> Front:
         """The front of this case; the same bits wherever it runs."""
@@ -48,8 +52,8 @@ def fronts(scenarios: Iterable[Scenario], *, seeds: Iterable[int] | None = None,
         Runs the fronts in parallel: a ProcessPoolExecutor, or a Dask client's `get_executor()`. The result is the
         same. Default: one after the other, here.
     """
-    if isinstance(scenarios, Scenario):
-        raise ValueError(f"scenarios must be a list of Scenario; got the single {scenarios.name!r}")
+    if isinstance(scenarios, (Scenario, str)) or not isinstance(scenarios, Iterable):
+        raise ValueError(f"scenarios must be a list of Scenario, such as [{Scenario.example}]; got {scenarios!r:.80}")
     if not (start is None or isinstance(start, str) and start == "light"):
         raise ValueError(f"start must be 'light' or None; got {start!r}")
     population = budget(population, generations)[0]
@@ -59,6 +63,7 @@ def fronts(scenarios: Iterable[Scenario], *, seeds: Iterable[int] | None = None,
     for name, values in lists.items():
         if not values:
             raise ValueError(f"{name} must not be empty")
+    require(model=(model, Model), **{f"scenarios[{i}]": (s, Scenario) for i, s in enumerate(lists["scenarios"])})
     # refuse a bad value now, not after an hour
     seeds = [s if s is None else int(check("seeds", s, 0, whole=True, scalar=True)) for s in lists["seeds"]]
     scales = [check("shear_scales", s, above=0, scalar=True) for s in lists["shear_scales"]]

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from . import catalog
-from ._fields import Real, check, limits_of, number, unknown
+from ._fields import Real, Record, check, limits_of, number, unknown
 from .sky import Skyline
 
 RADIUS_M = 1_737_400.0                                   # the sphere of LOLA's heights
@@ -50,6 +50,8 @@ class Terrain:
     longitude_deg: float = number(default=0.0, scalar=True)
     radius_m: float = number(1.73e6, 1.745e6, default=RADIUS_M, scalar=True)      # the Moon's
     name: str = ""
+
+    __setstate__ = Record.__setstate__                   # a copy's heights are read-only too
 
     def __post_init__(self):
         height = np.array(self.height_m, float)

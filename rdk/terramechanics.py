@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arc, _contact
-from ._fields import Record, check, described, number, together, unknown
+from ._fields import Record, brief, check, described, number, require, together, unknown
 
 SLIP_MIN, SLIP_MAX = -0.9, 0.95                          # where the slip balance is sought
 CAPABILITY_SLIP, CAPABILITY_LIMIT_DEG = 0.6, 35.0        # peak-pull convention; steepest slope reported
@@ -38,6 +38,7 @@ class Soil(Record):
 
     Bekker (1969); Janosi & Hanamoto (1961); Heiken et al. (1991), chapter 9.
     """
+    example = "rdk.soil('apollo-nominal')"
     sinkage_exponent: float = number(above=0, maximum=3, doc="n of Bekker's law.")
     cohesive_modulus_kn_m_n1: float = number(doc="k_c. Fits to firm soil may be negative; k_c / b + k_phi is not.")
     frictional_modulus_kn_m_n2: float = number(above=0, doc="k_phi.")
@@ -50,6 +51,7 @@ class Soil(Record):
 @dataclass(frozen=True)
 class Wheel(Record):
     """A rigid wheel, smooth or with grousers."""
+    example = "rdk.rover('Rashid-1').wheel"
     radius_m: float = number(above=0, doc="r.")
     width_m: float = number(above=0, doc="b.")
     grouser_height_m: float = number(0, default=0.0, doc="h_g.")
@@ -78,7 +80,7 @@ class KernelOptions(Record):
     sinkage_scale: float = number(above=0, default=1.0, doc="Multiplies the sinkage reported; the forces stay.")
 
     def __post_init__(self):
-        if self.kernel not in TRANSITIONS:
+        if not isinstance(self.kernel, str) or self.kernel not in TRANSITIONS:
             raise unknown("unknown kernel", self.kernel, list(TRANSITIONS))
         super().__post_init__()
         c1, c2 = self.transition
@@ -107,6 +109,8 @@ class WheelForces(NamedTuple):
     entry_angle_rad: np.ndarray
     stress_level: np.ndarray
 
+    __repr__ = brief
+
 
 class SlipBalance(NamedTuple):
     """Where the pull meets the demand; NaN and stalled where the wheel is buried.
@@ -123,6 +127,8 @@ class SlipBalance(NamedTuple):
     buried: np.ndarray
     sliding: np.ndarray
 
+    __repr__ = brief
+
 
 class ContactStress(NamedTuple):
     """Stresses and soil displacement along the contact arc."""
@@ -130,6 +136,8 @@ class ContactStress(NamedTuple):
     shear_stress_pa: np.ndarray
     shear_displacement_m: np.ndarray
     transition_angle_rad: np.ndarray
+
+    __repr__ = brief
 
 
 def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: ArrayLike,
@@ -245,6 +253,7 @@ def grouser_lift(wheel: Wheel, grouser_lift_cap: ArrayLike = 0.6) -> float | np.
 
     Beyond the cap the shear planes of neighbouring grousers interfere.
     """
+    require(wheel=(wheel, Wheel))
     return 1 + np.minimum(wheel.grouser_count * wheel.grouser_height_m / (2 * np.pi * wheel.radius_m),
                           grouser_lift_cap)
 
@@ -254,6 +263,7 @@ def compaction_resistance(wheel: Wheel, soil: Soil, sinkage_m: ArrayLike) -> flo
 
     The work of Bekker's pressure down to that depth, per metre driven. A diagnostic: the drawbar pull contains it.
     """
+    require(wheel=(wheel, Wheel), soil=(soil, Soil))
     z, n = check("sinkage_m", sinkage_m, 0), soil.sinkage_exponent
     return wheel.width_m * _k_eff(wheel, soil) * z ** (n + 1) / (n + 1)
 
@@ -286,6 +296,7 @@ def _reported(forces, options):
 
 def patch_of(wheel, soil, options, **arrays):
     """The patch and the arrays as flat lanes, and the shape to give back."""
+    require(wheel=(wheel, Wheel), soil=(soil, Soil))
     c1, c2 = options.transition
     shape = together(wheel=wheel.shape, soil=soil.shape,
                      **{name: np.shape(value) for name, value in (options.numbers() | arrays).items()})

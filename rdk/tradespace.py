@@ -75,9 +75,11 @@ class Front(Shown):
 
     def save(self, path: str | Path) -> None:
         """Write the front to a JSON file, complete or not at all; `rdk.catalog.from_json` reads its designs too."""
+        def plain(record):
+            return {name: "inf" if v == math.inf else v for name, v in dataclasses.asdict(record).items()}
+
         kept = json.loads(catalog.to_json(self.designs, self.scenario)) | {
-            "model": {name: "inf" if v == math.inf else v for name, v in dataclasses.asdict(self.model).items()},
-            "problem": dataclasses.asdict(self.problem), "message": self.message,
+            "model": plain(self.model), "problem": plain(self.problem), "message": self.message,
             "objective_history": [F.tolist() for F in self.objective_history]}
         path = Path(path)
         part = path.with_name(f".{path.name}.{os.getpid()}.part")
@@ -88,14 +90,15 @@ class Front(Shown):
     def load(cls, path: str | Path) -> Front:
         """The front in a file of `save`, its performance evaluated anew; ValueError where the file is damaged."""
         try:
-            kept = json.loads(Path(path).read_text(encoding="utf-8"))
+            kept = catalog.read_json(Path(path).read_text(encoding="utf-8"))
             empty = not any(kept["design"][name] for name in DESIGN_SPACE)
             some = {"design": {name: v.high for name, v in DESIGN_SPACE.items()}} if empty else {}
             designs, scenario = catalog.from_json(json.dumps(kept | some))
             if empty:
                 designs = Design(**{name: np.empty(0) for name in DESIGN_SPACE})
-            model = Model(**{name: math.inf if v == "inf" else v for name, v in kept["model"].items()})
-            problem = Problem(**kept["problem"] | {"constraints": tuple(map(tuple, kept["problem"]["constraints"]))})
+            model, problem = (
+                kind(**{name: math.inf if v == "inf" else v for name, v in kept[kind.__name__.lower()].items()})
+                for kind in (Model, Problem))
             history = tuple(np.array(F, float).reshape(len(F), len(problem.objectives))
                             for F in kept["objective_history"])
             return cls(designs, evaluate(designs, scenario, model=model), scenario, model, problem, history,

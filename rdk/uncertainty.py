@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from . import catalog
-from ._fields import check, unknown
+from ._fields import check, require, unknown
 from .design import Model, Scenario
 from .terramechanics import Soil, Wheel, wheel_forces
 
@@ -49,6 +49,7 @@ def inputs_at(points: np.ndarray, scenario: Scenario, *, model: Model = Model(),
         shares `weight`; a row counts only `when` its condition holds, "from=35" or "below=35" of the nominal value, or
         "kernel=paper" of the model.
     """
+    require(scenario=(scenario, Scenario), model=(model, Model))
     nominal, changes = {**model.numbers(), **scenario.soil.numbers()}, {}
     table = catalog.rows("uncertainties.csv") if table is None else table
     for name, u in zip(uncertain_names(table), np.asarray(points, float).T):

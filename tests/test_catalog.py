@@ -5,6 +5,7 @@ import io
 import json
 import math
 import shutil
+from pathlib import Path
 
 import pytest
 
@@ -195,7 +196,10 @@ EUROPEAN = TEXT.replace(",", ";").replace(".", ",")
     EUROPEAN, "\ufeff" + EUROPEAN, TEXT.replace(",", ";"), TEXT.replace(",", "\t"), "sep=;\n" + EUROPEAN,
     EUROPEAN.replace(";", "\t"), TEXT + "\n,,\n", "\n" + TEXT, TEXT.replace("wheel_count", "n_wheels"),
     TEXT.replace("0.1,", "1e-1,", 1), TEXT.replace("0.1,", "+.1,", 1), TEXT.replace("0.1,", '"0.1",', 1),
-    HEADER + ",rover\n" + ROW + ',"a, ""b""\nc"\n'], ids=range(18))
+    HEADER + ",rover\n" + ROW + ',"a, ""b""\nc"\n', "sep=;\n\n" + EUROPEAN, '"sep=;"\n' + EUROPEAN,
+    "\t" + HEADER.replace(",", "\t") + "\n0\t" + ROW.replace(",", "\t"),
+    HEADER + ",rover\n" + ROW + ",a\u2028b\x0bc\n"],
+    ids=range(22))
 def test_a_table_is_read_as_it_is_written_elsewhere(text):
     assert catalog.from_csv(text) == RASHID
 
@@ -300,6 +304,8 @@ REFUSED_FILES = [
     (GOOD.replace('"wheel_radius_m": 0.1', '"wheel_radius_m": [[1], [2, 3]]'), "wheel_radius_m must be positive"),
     (GOOD.replace('"duty_cycle": 0.3', '"duty_cycle": "Infinity"'), "duty_cycle must be"),
     (GOOD.replace('"duty_cycle": 0.3', '"duty_cycle": [0.3, 0.4]'), "must hold single numbers"),
+    (GOOD.replace('"range_km": "max"', '"range_km": "most"'), "objectives must be"),
+    (GOOD.replace('">="', '">"'), "constraints must be like"),
     (GOOD[:-20], "not a JSON file"), ("[1]", "not a design kept by rdk"), ("[" * 10**5, "not a JSON file"),
     ('{"format": "rdk-design-1", "design": {"wheel_radius_m": 1}}', "lacks wheel_width_m"),
     ('{"format": "rdk-design-1", "design": {}, "scenario": 3}', "lacks")]
@@ -309,3 +315,16 @@ REFUSED_FILES = [
 def test_a_damaged_design_file_is_refused_in_words(text, message):
     with pytest.raises(ValueError, match=message):
         catalog.from_json(text)
+
+
+@pytest.mark.parametrize("read", [catalog.from_json, catalog.from_csv])
+def test_what_is_no_text_is_refused(read):
+    for text in (GOOD.encode(), None, Path("rover.json")):
+        with pytest.raises(TypeError, match="text must be a str; got"):
+            read(text)
+
+
+@pytest.mark.parametrize("read", [rdk.rover, rdk.scenario, rdk.soil, rdk.skyline, catalog.rover_row])
+def test_a_list_of_names_is_no_name(read):
+    with pytest.raises(ValueError, match=r"no (rover|scenario|soil|site) \['a'\]"):
+        read(["a"])

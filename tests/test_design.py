@@ -3,6 +3,7 @@
 import copy
 import dataclasses
 import math
+import operator
 import pickle
 import warnings
 from dataclasses import replace
@@ -271,7 +272,7 @@ def test_random_designs_refuse_a_senseless_count(count):
 
 # ---- records as values --------------------------------------------------------------------------------------
 
-RECORDS = [DESIGN, SCENARIO, MODEL, SOIL, DESIGN.wheel, rdk.evaluate(DESIGN, SCENARIO)]
+RECORDS = [DESIGN, SCENARIO, MODEL, SOIL, DESIGN.wheel, rdk.evaluate(DESIGN, SCENARIO), Problem(traverse_limit_km=1.0)]
 POPULATION = rdk.random_designs(5, seed=1)
 
 
@@ -341,6 +342,76 @@ def test_what_a_record_holds_cannot_be_written():
         design.wheel_radius_m = 0.1
 
 
+@pytest.mark.parametrize("again", [copy.deepcopy, lambda record: pickle.loads(pickle.dumps(record))],
+                         ids=["deepcopy", "pickle"])
+def test_nor_can_what_a_copy_holds(again):
+    one, many = rdk.evaluate(DESIGN, SCENARIO), rdk.evaluate(POPULATION, SCENARIO)
+    skyline, ground = rdk.skyline("shackleton_rim"), rdk.terrain.synthetic(1, cells=32)
+    mission = SCENARIO.replace(slope_deg=[1.0, 2.0], soil=SOIL.replace(cohesion_kpa=[0.1, 0.2]), skyline=skyline)
+    for record, fields in ((POPULATION, rdk.DESIGN_SPACE), (many, ("range_km", "arrival_h", "mass.total_kg")),
+                           (one, ("log.soc",)), (mission, ("slope_deg", "soil.cohesion_kpa", "skyline.elevation_deg")),
+                           (skyline, ("azimuth_deg",)), (ground, ("height_m",))):
+        for name in fields:
+            with pytest.raises(ValueError, match="read-only"):
+                operator.attrgetter(name)(again(record))[0] = -50
+
+
+@pytest.mark.parametrize("value", [[True, 0.1], [0.1, False], [[0.1], [True]], (np.True_, 0.1), [True, 4]],
+                         ids=range(5))
+def test_a_truth_value_among_numbers_is_refused(value):
+    with pytest.raises(ValueError, match="wheel_radius_m must be positive and finite; got"):
+        DESIGN.replace(wheel_radius_m=value)
+    with pytest.raises(ValueError, match="slope_deg must be .*; got"):
+        rdk.sweep(DESIGN, SCENARIO, {"slope_deg": value})
+
+
+def test_a_sweep_refuses_masked_values():
+    with pytest.raises(ValueError, match="slope_deg must be .*masked"):
+        rdk.sweep(DESIGN, SCENARIO, {"slope_deg": np.ma.array([1.0, 2.0], mask=[False, True])})
+
+
+def test_a_refusal_stays_short():
+    with pytest.raises(ValueError) as error:
+        DESIGN.replace(wheel_radius_m=["0.1"] * 10_000)
+    assert len(str(error.value)) < 300
+
+
+@pytest.mark.parametrize("name", [5, None, b"x", ["a"]], ids=str)
+def test_a_name_is_text(name):
+    for record in (SOIL, SCENARIO):
+        with pytest.raises(TypeError, match="name must be a str; got"):
+            record.replace(name=name)
+
+
+@pytest.mark.parametrize("change, message", [
+    (dict(objectives="range_km"), "objectives must be a dictionary like"), (dict(objectives={}), "objectives must be"),
+    (dict(objectives={"range_km": "maximum"}), "objectives must be"), (dict(constraints="abc"), "constraints must be"),
+    (dict(constraints=[("range_km",)]), "constraints must be"), (dict(constraints=[("range_km", ">", 1)]), "constr"),
+    (dict(constraints=[("range_km", ">=", math.nan)]), "limit of range_km must be a number; got nan"),
+    (dict(constraints=[("range_km", ">=", "1")]), "limit of range_km"), (dict(seed=1.5), "seed must be a whole"),
+    (dict(traverse_limit_km=-1), "traverse_limit_km must be zero or more")], ids=str)
+def test_a_problem_is_checked_when_it_is_posed(change, message):
+    with pytest.raises(ValueError, match=message):
+        Problem(**change)
+
+
+def test_a_problem_is_a_value_and_a_mission_takes_nothing_else():
+    asked = Problem({"range_km": "max"}, [["total_mass_kg", "<=", np.float64(20)]], np.float64(5), np.int64(3))
+    assert asked == Problem({"range_km": "max"}, (("total_mass_kg", "<=", 20.0),), 5.0, 3) and hash(asked)
+    assert SCENARIO.replace(slope_deg=[1.0, 2.0], problem=asked)[1].problem == asked
+    with pytest.raises(TypeError, match=r"problem must be a Problem, such as rdk.Problem\(\); got 'polar'"):
+        SCENARIO.replace(problem="polar")
+
+
+def test_results_of_long_arrays_show_their_ends():
+    load = np.linspace(5.0, 50.0, 200)
+    for result in (rdk.terramechanics.wheel_forces(DESIGN.wheel, SOIL, load, 0.1),
+                   rdk.terramechanics.slip_balance(DESIGN.wheel, SOIL, load, 1.0), rdk.route.ridge(),
+                   rdk.stability.axle_loads(load, 0.5, 0.2, 5.0, wheel_count=4)):
+        text = repr(result)
+        assert text.startswith(type(result).__name__ + "(") and len(text) < 1200 and "..." in text
+
+
 @pytest.mark.parametrize("value", [
     np.ma.array([0.1, 0.2], mask=[False, True]), np.ma.masked, np.ma.array(0.1, mask=True),
     [np.ma.array([0.1], mask=[True]), np.ma.array([0.2])], np.ma.array([0.1, 0.2])], ids=range(5))
@@ -378,7 +449,21 @@ def test_the_kernel_brings_its_own_transition():
     (lambda: rdk.intervals(DESIGN, "mare"), r"scenario .*rdk.scenario"),
     (lambda: rdk.attribution(DESIGN, "Pragyan", SCENARIO), r"baseline .*rdk.rover"),
     (lambda: rdk.evaluate("Rashid-1", SCENARIO), r"design .*rdk.rover"),
-    (lambda: rdk.pareto_front("mare"), r"scenario .*rdk.scenario")], ids=range(7))
+    (lambda: rdk.pareto_front("mare"), r"scenario .*rdk.scenario"),
+    (lambda: rdk.fronts(["mare"]), r"scenarios\[0\] .*rdk.scenario"),
+    (lambda: rdk.fronts([SCENARIO], model="paper"), r"model .*rdk.Model"),
+    (lambda: rdk.terramechanics.wheel_forces("Rashid-1", SOIL, 5, 0.1), r"wheel .*rdk.rover\('Rashid-1'\).wheel"),
+    (lambda: rdk.terramechanics.slip_balance(DESIGN, SOIL, 5, 1), r"wheel .*; got Design"),
+    (lambda: rdk.terramechanics.slope_capability(DESIGN.wheel, "apollo-nominal", 5), r"soil .*rdk.soil\('apollo"),
+    (lambda: rdk.terramechanics.grouser_lift("Rashid-1"), r"wheel .*\.wheel"),
+    (lambda: rdk.terramechanics.compaction_resistance(DESIGN.wheel, "apollo", 0.01), r"soil .*rdk.soil"),
+    (lambda: rdk.stability.static_pressure_kpa(DESIGN.wheel, "apollo", 5), r"soil .*rdk.soil"),
+    (lambda: rdk.route.per_metre("Rashid-1", SCENARIO, 3), r"design .*rdk.rover"),
+    (lambda: rdk.route.cost(DESIGN, "mare"), r"scenario .*rdk.scenario"),
+    (lambda: rdk.route.march(rdk.route.ridge(), "Rashid-1", SCENARIO), r"design .*rdk.rover"),
+    (lambda: rdk.sampling.uncertain_inputs("mare"), r"scenario .*rdk.scenario"),
+    (lambda: rdk.catalog.to_csv(DESIGN, "fast"), "performance must be a Record; got 'fast'"),
+    (lambda: rdk.catalog.at_latitude("mare", 5.0), r"scenario .*rdk.scenario")], ids=range(21))
 def test_a_name_where_a_record_is_due_is_answered_with_how_to_get_one(call, message):
     with pytest.raises(TypeError, match=message):
         call()

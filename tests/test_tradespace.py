@@ -363,16 +363,20 @@ def test_a_front_is_kept_in_a_file_with_all_that_made_it(small, tmp_path):
     model = rdk.Model(hub_no_load_speed_rad_s=math.inf, growth_fraction=0.3)
     other = rdk.pareto_front(replace(HIGHLAND, required_obstacle_height_m=0.05), **SMALL, model=model)
     empty = rdk.pareto_front(MARE, **SMALL, constraints=[("range_km", ">=", 90)], warn=False)
-    for front in small, other, empty:
+    free = replace(small, problem=replace(small.problem, traverse_limit_km=math.inf))
+    for front in small, other, empty, free:
         front.save(path)
         assert_same_bits(ts.Front.load(path), front)
         json.loads(path.read_text(), parse_constant=pytest.fail)     # strict: no Infinity
     small.save(path)
     designs, mission = catalog.from_json(path.read_text(encoding="utf-8"))
     assert mission == small.scenario and (designs.wheel_radius_m == small.designs.wheel_radius_m).all()
-    path.write_text("[1]")
-    with pytest.raises(ValueError, match="front.json holds no sound front"):
-        ts.Front.load(path)
+    path.write_text("\ufeff" + path.read_text(encoding="utf-8"), encoding="utf-8")
+    assert_same_bits(ts.Front.load(path), small)
+    for text in "[1]", path.read_text(encoding="utf-8").replace('"message"', '"message": "x", "message"'):
+        path.write_text(text, encoding="utf-8")
+        with pytest.raises(ValueError, match="front.json holds no sound front"):
+            ts.Front.load(path)
     assert [p.name for p in tmp_path.iterdir()] == ["front.json"]
 
 
