@@ -164,7 +164,8 @@ def sweep(design: Design, scenario: Scenario, over: dict, *, model: Model = Mode
         raise ValueError("over: duration_earth_days sets the number of time steps and cannot be an array; evaluate "
                          "one scenario a duration")
     for name, v in over.items():
-        check(f"over: {name}", v, infinite=True)         # what is masked or no number, before it becomes an array
+        if any(name in limits_of(kind) for kind in (Design, Scenario, Soil, Model)):
+            check(f"over: {name}", v, infinite=True)     # what is masked or no number, before it becomes an array
     values = tuple(np.asarray(v) for v in over.values())
     for name, v in zip(over, values):
         if v.ndim != 1 or not v.size:

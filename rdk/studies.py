@@ -52,8 +52,9 @@ def fronts(scenarios: Iterable[Scenario], *, seeds: Iterable[int] | None = None,
         Runs the fronts in parallel: a ProcessPoolExecutor, or a Dask client's `get_executor()`. The result is the
         same. Default: one after the other, here.
     """
-    if isinstance(scenarios, (Scenario, str)) or not isinstance(scenarios, Iterable):
-        raise ValueError(f"scenarios must be a list of Scenario, such as [{Scenario.example}]; got {scenarios!r:.80}")
+    if isinstance(scenarios, (Scenario, str)):
+        single = getattr(scenarios, "name", scenarios)
+        raise ValueError(f"scenarios must be a list of Scenario; got the single {single!r}")
     if not (start is None or isinstance(start, str) and start == "light"):
         raise ValueError(f"start must be 'light' or None; got {start!r}")
     population = budget(population, generations)[0]
