@@ -12,7 +12,7 @@ from .inputs import NUMBERS, label
 from .page import card, details, verdict
 
 DRAWS = 1024                                             # Monte-Carlo draws behind the readings
-BAND_DRAWS, CURVE, MAP = 60, 61, 25                      # draws and points of a sweep
+BAND_DRAWS, CURVE, MAP = 256, 61, 25                     # of the readings' draws the first; points of a sweep
 ROWS = (("range_km", 2), ("total_mass_kg", 2), ("slope_capability_deg", 1), ("energy_balance_pct", 0),
         ("cold_temperature_c", 0), ("hot_temperature_c", 0), ("wheel_torque_nm", 2), ("slip", 2), ("sinkage_m", 4),
         ("cruise_speed_m_s", 3), ("obstacle_capability_m", 3), ("minimum_soc", 2), ("average_solar_power_w", 1))
@@ -135,8 +135,8 @@ def swept(design, scenario, model, fields, metric, size):
     if name != "grouser_count":
         values = np.sort(np.concatenate([values, np.linspace(values[jump], values[jump + 1], 12)[1:-1]]))
     line = sweep(design, scenario, {name: values}, model=model).performance
-    knots = values[::3]
-    draws = {n: v[:, None] for n, v in uncertain_inputs(scenario, draws=BAND_DRAWS, model=model).items()}
+    knots = values[::6]
+    draws = {n: v[:BAND_DRAWS, None] for n, v in uncertain_inputs(scenario, draws=DRAWS, model=model).items()}
     *changed, coefficients = replaced(design, scenario, model, {**draws, name: knots})
     cloud = evaluate(*changed, model=coefficients)
     band = np.quantile(np.nan_to_num(np.asarray(getattr(cloud, metric), float)), [0.05, 0.95], axis=0)
