@@ -81,7 +81,7 @@ class Problem(Record):
     seed: int | None = number(0, whole=True, scalar=True, optional=True, default=None)
 
     def __post_init__(self):
-        if not (isinstance(self.objectives, dict) and self.objectives
+        if not (isinstance(self.objectives, dict)        # an empty one is for a search to refuse
                 and set(map(str, self.objectives.values())) <= {"max", "min"}):
             raise ValueError(f"objectives must be a dictionary like {{'range_km': 'max'}}; got {self.objectives!r:.80}")
         if not (isinstance(self.constraints, (list, tuple)) and all(

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from . import catalog
-from .design import DESIGN_SPACE, Model, Scenario
+from ._fields import require
+from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import evaluate
 from .pictures import label
 from .sampling import replaced
@@ -32,7 +33,7 @@ class Limit(NamedTuple):
     words: str
 
 
-def binding(design, scenario, performance, model=Model()):
+def binding(design, scenario, performance, *, model=Model()):
     """What binds a single design on its mission.
 
     A design that drives, but not to the range limit, is bound by the lever of which 10 % more gains most range: hub
@@ -58,16 +59,13 @@ def binding(design, scenario, performance, model=Model()):
     if p.stalled and p.wheel_torque_nm > design.peak_wheel_torque_nm:
         also = " Traction fails as well." if p.slip >= model.slip_max else ""
         return Binding("torque", f"Torque binds: climbing {scenario.slope_deg:g} deg takes {p.wheel_torque_nm:.2f} N m "
-                       "at "
-                                 f"each wheel, the hub gives {design.peak_wheel_torque_nm:.2f} N m.{also}")
+                                 f"at each wheel, the hub gives {design.peak_wheel_torque_nm:.2f} N m.{also}")
     if p.stalled:
         return Binding("traction", f"Traction binds: no slip develops the pull that {scenario.slope_deg:g} deg "
-                       "demands; "
-                                   f"this rover climbs {p.slope_capability_deg:.1f} deg.")
+                                   f"demands; this rover climbs {p.slope_capability_deg:.1f} deg.")
     if p.average_solar_power_w <= base:
         return Binding("sun", f"Sunlight binds: the array averages {p.average_solar_power_w:.1f} W, avionics and "
-                       "payload "
-                              f"draw {base:.1f} W, and nothing is left for driving.")
+                              f"payload draw {base:.1f} W, and nothing is left for driving.")
     if scenario.duty_cycle == 0:
         return Binding("duty", "The duty cycle is 0: the rover never drives.")
     if p.range_km >= scenario.traverse_limit_km:
@@ -100,7 +98,7 @@ def _gains(design, scenario, performance, model):
     return dict(zip(LEVERS, np.minimum(100 * (np.where(factors > 1, ratio, 1 / ratio) - 1), 999.0).tolist()))
 
 
-def verdict(design, scenario, performance, model=Model()):
+def verdict(design, scenario, performance, *, model=Model()):
     """Whether a single design does its mission, in one sentence, and whether it does.
 
     Parameters
@@ -139,11 +137,11 @@ def verdict(design, scenario, performance, model=Model()):
               [(f"misses {label(metric)[0]} {sign} {least:g} {label(metric)[1]}".rstrip(), float(getattr(p, metric)))]
               if not (value >= least if sign == ">=" else value <= least) and not (metric == "range_km" and value <= 0)]
     words = [drive, *bad, *missed]
-    return bool(p.range_km > 0 and not bad
-                and not missed), ", ".join(words[:-1]) + ", and " * (len(words) > 1) + words[-1] + "."
+    sentence = ", ".join(words[:-1]) + ", and " * (len(words) > 1) + words[-1] + "."
+    return bool(p.range_km > 0 and not bad and not missed), sentence
 
 
-def levers(design, scenario, performance, key, model=Model()):
+def levers(design, scenario, performance, key, *, model=Model()):
     """What 10 % more of each lever brings against what binds: (field, words, gain, unit) by falling gain.
 
     `key` is that of `binding`. The gain is in range, in slope capability where traction binds, in torque to spare
@@ -174,7 +172,7 @@ def levers(design, scenario, performance, key, model=Model()):
     return sorted(rows, key=lambda lever: -lever[2])
 
 
-def limits(design, scenario, performance, model=Model()):
+def limits(design, scenario, performance, *, model=Model()):
     """The mission's requirements, each met or missed by what the design does.
 
     Parameters
@@ -225,6 +223,7 @@ def as_python(design, scenario, model, *calls, baseline=None):
     str
         Source text that runs as it stands.
     """
+    require(design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     changed = {f.name: getattr(model, f.name) for f in dataclasses.fields(Model) if getattr(model, f.name) != f.default}
     mission = {f.name: getattr(scenario, f.name) for f in dataclasses.fields(Scenario)
                if f.name not in ("soil", "problem") and getattr(scenario, f.name) != f.default}

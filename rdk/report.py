@@ -16,11 +16,13 @@ from typing import NamedTuple
 import numpy as np
 
 from . import catalog, explain, pictures
-from .design import DESIGN_SPACE, Design, Model
+from ._fields import require
+from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import evaluate
 from .rover_picture import rover_picture
 from .sampling import attribution, intervals, uncertain_inputs
 from .tradespace import posed
+from .uncertainty import DRAWS
 
 STYLE = """
 @page { size: A4; margin: 11mm }
@@ -65,14 +67,14 @@ class Requirement(NamedTuple):
         return f"{name} {'≥' if self.sign == '>=' else '≤'} {self.limit:g} {unit}".rstrip()
 
 
-def requirements(design, scenario, draws=400, seed=0, model=Model()):
-    """The demands of a mission's study on a single design, each with its chance to hold.
+def requirements(design, scenario, *, draws=DRAWS, seed=0, model=Model()):
+    """The demands of a mission's problem on a single design, each with its chance to hold.
 
     Parameters
     ----------
     design : Design
     scenario : Scenario
-        Single ones. Its `study.constraints` are the demands; that the rover drives the mission comes first.
+        Single ones. Its `problem.constraints` are the demands; that the rover drives the mission comes first.
     draws, seed : int
         Of the Monte-Carlo intervals.
     model : Model
@@ -85,6 +87,7 @@ def requirements(design, scenario, draws=400, seed=0, model=Model()):
     -----
     A share covers the table of uncertainties and nothing that the models leave out.
     """
+    require(design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     for name, record in ("design", design), ("scenario", scenario), ("model", model):
         if record.shape:
             raise ValueError(f"{name} must be a single one; got arrays of shape {record.shape}")
@@ -94,7 +97,7 @@ def requirements(design, scenario, draws=400, seed=0, model=Model()):
     return [_requirement(metric, sign, limit, found, inputs) for metric, sign, limit in demands]
 
 
-def joint_odds(design, scenario, *, draws=400, seed=0, model=Model()):
+def joint_odds(design, scenario, *, draws=DRAWS, seed=0, model=Model()):
     """Share of the Monte-Carlo draws in which a single design drives and meets every demand of the mission at once."""
     wanted = [("feasible", ">=", 1), *posed(scenario)[1].constraints]
     return float(intervals(design, scenario, draws=draws, seed=seed, model=model).share(wanted))
@@ -125,14 +128,14 @@ def _requirement(metric, sign, limit, found, inputs):
 
 
 def report(design, scenario, title, notes="", *, front=None, baseline=None, baseline_name="the baseline",
-           why="total_mass_kg", bounds=None, candidates=None, model=Model(), draws=400):
+           why="total_mass_kg", bounds=None, candidates=None, model=Model(), draws=DRAWS):
     """A one-page report on a design, as the text of an HTML file.
 
     Parameters
     ----------
     design : Design
     scenario : Scenario
-        Single ones; the scenario's study gives the demands.
+        Single ones; the scenario's problem gives the demands.
     title : str
     notes : str
         What to know beyond the tables: choices, risks, doubts. An empty line starts a paragraph.
@@ -170,7 +173,7 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
     """
     if not isinstance(title, str) or not title.strip():
         raise ValueError(f"title must be a text; got {title!r}")
-    demands = requirements(design, scenario, draws, model=model)
+    demands = requirements(design, scenario, draws=draws, model=model)
     result = evaluate(design, scenario, model=model)
     names, fleet = published()
     rovers = evaluate(fleet, scenario, model=model)
@@ -191,7 +194,7 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
     verdict = f"Misses {len(missed)} of {len(demands)} demands: {'; '.join(missed)}." if missed else (
         f"Meets all {len(demands)} demands of the mission.")
     verdict += f" All hold at once in {100 * odds:.0f} % of the draws."
-    binds = explain.binding(design, scenario, result, model).sentence
+    binds = explain.binding(design, scenario, result, model=model).sentence
     return "\n".join([
         "<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8">', f"<title>{_text(title)}</title>",
         f"<style>{STYLE}</style></head><body>", f"<h1>{_text(title)}</h1>",
@@ -220,6 +223,7 @@ def write_report(design, scenario, path, title=None, notes="", **options):
     >>> page.name
     'rover.html'
     """
+    require(design=(design, Design), scenario=(scenario, Scenario))
     return write(report(design, scenario, f"A rover for {scenario.name}" if title is None else title, notes, **options),
                  path)
 
@@ -242,6 +246,8 @@ def write(text, path):
         If the folder is missing or read-only; the message says what to do.
     """
     path = Path(path)
+    if path.is_dir() or not path.name:
+        raise IsADirectoryError(f"path must name a file, such as 'rover.html'; got the folder {str(path)!r}")
     try:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name[:100], suffix=".part")
     except OSError as error:

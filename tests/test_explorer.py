@@ -84,7 +84,7 @@ def assert_current(explorer):
     for name, value in wanted.numbers().items():
         np.testing.assert_array_equal(explorer.result.numbers()[name], value, err_msg=name)
     words = shown(explorer)
-    assert explain.verdict(explorer.design, explorer.scenario, wanted, explorer.model)[1] in words
+    assert explain.verdict(explorer.design, explorer.scenario, wanted, model=explorer.model)[1] in words
     assert answers.words(wanted.total_mass_kg, 2, "kg") in words and answers.words(wanted.slope_capability_deg, 1,
                                                                                    "°") in words
     assert "rdk-old" not in explorer.parts["verdict"].value
@@ -681,7 +681,7 @@ def test_callbacks_from_several_threads(explorer):
 
 
 def test_two_explorers_do_not_disturb_each_other(explorer):
-    other = Explorer("Tenacious", MARE, "wheel")
+    other = Explorer("Tenacious", MARE, view="wheel")
     still = {name: part.value for name, part in other.parts.items()}
     explorer.set(generations=3, population=8)
     explorer.optimise()

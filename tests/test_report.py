@@ -244,3 +244,16 @@ def test_it_prints_on_one_page_of_a4_with_a_full_page_of_notes(tmp_path):
         pdf = tab.pdf(format="A4", prefer_css_page_size=True)
         browser.close()
     assert len(re.findall(rb"/Type\s*/Page\b", pdf)) == 1
+
+
+@pytest.mark.parametrize("call", [
+    lambda: rdk.write_report("Rashid-1", MARE, "x.html"), lambda: report("Rashid-1", MARE, "x"),
+    lambda: rdk.explain.as_python("Rashid-1", MARE, rdk.Model()), lambda: rdk.Explorer(3)], ids=range(4))
+def test_what_is_no_rover_is_refused_with_how_to_get_one(call):
+    with pytest.raises(TypeError, match=r"must be a Design, such as rdk.rover\('Rashid-1'\); got"):
+        call()
+
+
+def test_a_folder_in_place_of_a_file_is_refused(tmp_path):
+    with pytest.raises(IsADirectoryError, match="path must name a file"):
+        rdk.write_report(RASHID, MARE, tmp_path, draws=20)

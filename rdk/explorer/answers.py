@@ -8,10 +8,10 @@ from ..design import DESIGN_SPACE
 from ..mission import evaluate
 from ..report import published
 from ..sampling import attribution, replaced, sweep, uncertain_inputs
+from ..uncertainty import DRAWS
 from .inputs import NUMBERS, label
 from .page import card, details, verdict
 
-DRAWS = 1024                                             # Monte-Carlo draws behind the readings
 BAND_DRAWS, CURVE, MAP = 256, 61, 25                     # of the readings' draws the first; points of a sweep
 ROWS = (("range_km", 2), ("total_mass_kg", 2), ("slope_capability_deg", 1), ("energy_balance_pct", 0),
         ("cold_temperature_c", 0), ("hot_temperature_c", 0), ("wheel_torque_nm", 2), ("slip", 2), ("sinkage_m", 4),
@@ -40,7 +40,7 @@ def meets(performance, constraints):
 def readings(design, scenario, result, spans, before, model, old):
     """The five cards and the table of all readings; `spans` are the intervals, old ones or None."""
     wanted = {(metric, sign): limit for metric, sign, limit in scenario.problem.constraints}
-    needed = {limit.metric: limit for limit in explain.limits(design, scenario, result, model)}
+    needed = {limit.metric: limit for limit in explain.limits(design, scenario, result, model=model)}
     route, cards = scenario.traverse_limit_km, []
     slope = max(scenario.slope_deg, wanted.get(("slope_capability_deg", ">="), 0.0))
     asked = wanted.get(("range_km", ">="), 0.0)
@@ -92,7 +92,7 @@ def readings(design, scenario, result, spans, before, model, old):
 
 def answer(design, scenario, result, binding, spans, before, model, old=False):
     """HTML of the verdict with its readings, and the rows of the table."""
-    met, sentence = explain.verdict(design, scenario, result, model)
+    met, sentence = explain.verdict(design, scenario, result, model=model)
     cards, table = readings(design, scenario, result, spans, before, model, old)
     status = "missed" if not met else "risk" if "! at risk" in cards else "met"
     odds = ""
@@ -100,7 +100,7 @@ def answer(design, scenario, result, binding, spans, before, model, old=False):
         share = 100 * float(spans.share([("feasible", ">=", 1), *scenario.problem.constraints]))
         asked = [limit for metric, _, limit in scenario.problem.constraints if (metric, limit) != ("range_km", 0.1)]
         odds = f"{'Meets all demands' if asked else 'Drives'} in {share:.0f} % of {DRAWS:,} draws."
-    said = explain.levers(design, scenario, result, binding.key, model)
+    said = explain.levers(design, scenario, result, binding.key, model=model)
     buttons = [(f"lever:{lever[0]}", "{1} +10 %: {2:+.2g} {3}".format(*lever)) for lever in said[:3] if lever[2] > 0]
     head = binding.sentence
     if buttons:

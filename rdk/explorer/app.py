@@ -17,7 +17,8 @@ import ipywidgets as W
 import numpy as np
 
 from .. import catalog, explain, pictures
-from ..design import DESIGN_SPACE, Model
+from .._fields import require
+from ..design import DESIGN_SPACE, Design, Model, Scenario
 from ..mission import evaluate
 from ..report import published
 from ..rover_picture import rover_picture
@@ -73,15 +74,17 @@ class Explorer(State):
     'traction'
     """
 
-    def __init__(self, rover="Rashid-1", scenario="equatorial_mare_traverse", view="log", model=Model(), *, state=""):
+    def __init__(self, rover="Rashid-1", scenario="equatorial_mare_traverse", *, view="log", model=Model(), state=""):
         self.error, self.intervals, self.binding = "", None, None
         self._thread, self._stop, self._heard, self._table = None, threading.Event(), 0, []
         self._drawer = self._progress = ("", "")
         self._picture = self._status = self._shown = ""
         self._app, self._size = os.environ.get("SERVER_SOFTWARE", "").startswith("voila"), (600, 380)
         self._refresher = None
-        super().__init__(catalog.rover(rover) if isinstance(rover, str) else rover,
-                         catalog.scenario(scenario) if isinstance(scenario, str) else scenario, model)
+        rover = catalog.rover(rover) if isinstance(rover, str) else rover
+        scenario = catalog.scenario(scenario) if isinstance(scenario, str) else scenario
+        require(rover=(rover, Design), scenario=(scenario, Scenario), model=(model, Model))
+        super().__init__(rover, scenario, model)
         self._build()
         self._refresher = Refresher(self._refresh)
         self.set(view=view)
@@ -205,7 +208,7 @@ class Explorer(State):
         if self.error:
             return self.error
         rows = [f"{name:24}{value:>12}   {span:22}{limit}".rstrip() for name, value, span, limit in self._table]
-        return "\n".join([explain.verdict(self.design, self.scenario, self.result, self.model)[1],
+        return "\n".join([explain.verdict(self.design, self.scenario, self.result, model=self.model)[1],
                           self.binding.sentence, self.binding.detail, *rows])
 
     # ---- answers ----------------------------------------------------------------------------------------------
@@ -219,7 +222,7 @@ class Explorer(State):
         self._tell(busy=view in SLOW or view != self._shown)
         try:
             result = evaluate(design, scenario, model=model)
-            binding = explain.binding(design, scenario, result, model)
+            binding = explain.binding(design, scenario, result, model=model)
             self.result, self.binding, self.error = result, binding, ""
             see["verdict"].value, self._table = answers.answer(design, scenario, result, binding, self.intervals,
                                                                before, model, old=True)
