@@ -229,7 +229,7 @@ def test_by_keyboard_alone(explorer):
     lever = explorer.locator('[data-do^="lever:"]').first
     lever.press("Enter")
     settled(explorer)
-    assert explorer.page.evaluate("document.activeElement !== document.body")
+    explorer.page.wait_for_function("document.activeElement !== document.body")
     number.fill("90")                                    # what was pressed before does not take the focus back
     number.press("Enter")
     number.evaluate("e => e.blur()")

@@ -125,7 +125,9 @@ class Explorer(State):
         with self._lock:
             for number, kind, *arguments in events:
                 if number > self._heard:
-                    self._heard, self._notice = number, ("", "")
+                    self._heard = number
+                    if kind != "size":                   # a page that takes its place is no answer to words
+                        self._notice = ("", "")
                     try:
                         getattr(self, "_on_" + kind)(*arguments)
                     except ValueError as error:
