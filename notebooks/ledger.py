@@ -8,17 +8,19 @@ from __future__ import annotations
 import dataclasses
 import re
 import time
+import warnings
 from functools import cached_property, partial
 
 import numpy as np
 import pandas as pd
 
 from rdk import catalog, rediscovery, rules, validation
+from rdk._fields import check
 from rdk.design import Model
 from rdk.mission import evaluate
 from rdk.sampling import random_designs
 from rdk.studies import fronts
-from rdk.terramechanics import wheel_forces
+from rdk.terramechanics import OPTIONS, wheel_forces
 from rdk.tradespace import pareto_front
 
 SHORT = {"mare": "equatorial_mare_traverse", "polar": "polar_prospecting", "crater": "crater_rim_survey",
@@ -193,10 +195,35 @@ def _shear_shift(searches, change):
                              f"{1 + change:.2f}; the paper's figure is the upper side")
 
 
+def load_transfer(design, scenario, *, height_to_wheelbase=0.4, slope_deg=25.0, slip=0.6, model=Model()):
+    """Change of a rover's total pull (%) when a slope shifts weight to the lower axle at fixed total mass.
+
+    Axles are evenly spaced on a stiff frame; `rdk.stability.axle_loads` has the rocker-bogie. On two axles the loads
+    are w (1 +- 2 (h/L) tan(slope)) with w the mean wheel load, on three w (1 +- 3 (h/L) tan(slope)) at the ends and w
+    in the middle; all wheels turn at the same slip. NaN where the pull with equal loads is not positive or an axle
+    lifts off. The scenario gives soil and payload.
+    """
+    ratio = check("height_to_wheelbase", height_to_wheelbase, 0)
+    slope = np.radians(check("slope_deg", slope_deg, 0, below=90))
+    six = np.equal(design.wheel_count, 6)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)     # designs outside the class are the caller's choice
+        mass = evaluate(design, scenario, model=model).total_mass_kg
+    load = mass * model.gravity_m_s2 * np.cos(slope) / design.wheel_count
+    shift = np.where(six, 3.0, 2.0) * ratio * np.tan(slope)
+    factors = [np.ones_like(shift), 1 + shift, np.where(shift < 1, 1 - shift, 1.0)]
+    options = {name: getattr(model, name) for name in OPTIONS}
+    even, lower, upper = (wheel_forces(design.wheel, scenario.soil, load * f, slip, **options).drawbar_pull_n
+                          for f in factors)
+    ends = np.where(six, 1 / 3, 1 / 2)                   # share of the wheels on each end axle
+    change = 100 * (ends * (lower + upper - 2 * even)) / even
+    return np.where((even > 0) & (shift < 1), change, np.nan)[()]
+
+
 def _load_transfer(searches):
-    largest = max(abs(validation.load_transfer(front.designs, front.scenario, model=searches.model)).max()
+    largest = max(abs(load_transfer(front.designs, front.scenario, model=searches.model)).max()
                   for front in searches.canonical.values() if len(front))
-    tenacious = validation.load_transfer(catalog.rover("Tenacious"), catalog.scenario(SHORT["highland"]))
+    tenacious = load_transfer(catalog.rover("Tenacious"), catalog.scenario(SHORT["highland"]))
     return largest, (f"largest change over the four fronts; where the pull is nearly used up it is far more: "
                      f"{tenacious:.0f} % for Tenacious on apollo-loose")
 

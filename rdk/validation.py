@@ -14,7 +14,7 @@ from ._fields import check
 from .design import DESIGN_SPACE, Model
 from .mass import MassBreakdown, mass_breakdown
 from .mission import MASS_COEFFICIENTS, evaluate
-from .terramechanics import OPTIONS, Soil, Wheel, wheel_forces
+from .terramechanics import Soil, Wheel, wheel_forces
 
 
 def error_pct(model, reference):
@@ -112,20 +112,6 @@ def single_wheel_summary(points: pd.DataFrame | None = None, **options) -> pd.Da
     return table[table.points > 0].reset_index(drop=True)
 
 
-def grouser_doubt(height_mm: tuple = (20.0, 15.0), **options) -> pd.DataFrame:
-    """Medians of |error| of the Rashid-1 wheel test with grousers of either height that its source is cited for.
-
-    Returns one row a height: grouser_height_mm, and the median |error| in percent of drawbar_pull and sinkage.
-    """
-    points = catalog.table("single_wheel.csv").query(f"experiment == {EXPERIMENTS['hurrell']!r}")
-    rows = []
-    for height in np.atleast_1d(check("height_mm", height_mm, 0)):
-        errors = single_wheel(points.assign(grouser_height_mm=height), **options)
-        rows.append(dict(grouser_height_mm=height, drawbar_pull=errors.drawbar_pull_error_pct.abs().median(),
-                         sinkage=errors.sinkage_error_pct.abs().median()))
-    return pd.DataFrame(rows)
-
-
 def single_wheel_curves(slip, **options) -> pd.DataFrame:
     """The kernel's curves through the single-wheel tests, at slips of shape (n,), with options of `wheel_forces`.
 
@@ -198,33 +184,6 @@ def pull_shift(shear_scale=(0.70, 0.85, 1.15, 1.30), **options) -> pd.DataFrame:
     used = (conditions[3] > 0) & (pull[0] > 0)
     shift = 100 * abs(pull[1:, used] / pull[0, used] - 1)
     return pd.DataFrame(dict(shear_scale=scale, median_shift_pct=np.median(shift, 1), points=int(used.sum())))
-
-
-def load_transfer(design, scenario, *, height_to_wheelbase=0.4, slope_deg=25.0, slip=0.6,
-                  model: Model = Model()) -> float | np.ndarray:
-    """Change of a rover's total pull, in percent, when a slope shifts weight to the lower axle at fixed total mass.
-
-    Axles are evenly spaced on a stiff frame; `rdk.stability.axle_loads` has the rocker-bogie. On two axles the loads
-    are w (1 +- 2 (h/L) tan(slope)) with w the mean wheel load, on three w (1 +- 3 (h/L) tan(slope)) at the ends and w
-    in the middle; all wheels turn at the same slip. NaN where the
-    pull with equal loads is not positive or an axle lifts off. The scenario gives soil and payload; the slope is 0 to
-    below 90 degrees.
-    """
-    ratio = check("height_to_wheelbase", height_to_wheelbase, 0)
-    slope = np.radians(check("slope_deg", slope_deg, 0, below=90))
-    six = np.equal(design.wheel_count, 6)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)     # designs outside the class are the caller's choice
-        mass = evaluate(design, scenario, model=model).total_mass_kg
-    load = mass * model.gravity_m_s2 * np.cos(slope) / design.wheel_count
-    shift = np.where(six, 3.0, 2.0) * ratio * np.tan(slope)
-    factors = [np.ones_like(shift), 1 + shift, np.where(shift < 1, 1 - shift, 1.0)]
-    options = {name: getattr(model, name) for name in OPTIONS}
-    even, lower, upper = (wheel_forces(design.wheel, scenario.soil, load * f, slip, **options).drawbar_pull_n
-                          for f in factors)
-    ends = np.where(six, 1 / 3, 1 / 2)                   # share of the wheels on each end axle
-    change = 100 * (ends * (lower + upper - 2 * even)) / even
-    return np.where((even > 0) & (shift < 1), change, np.nan)[()]
 
 
 # ---- masses ---------------------------------------------------------------------------------------------------

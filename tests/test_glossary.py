@@ -202,7 +202,7 @@ def test_docstrings_state_the_units_of_the_names(module):
 def known_names():
     """Every identifier that rdk, its data and the glossary know."""
     found = set(NAMES)
-    for path in (REPO / "rdk").rglob("*.py"):
+    for path in [*(REPO / "rdk").rglob("*.py"), *(REPO / "notebooks").glob("*.py")]:
         found |= set(re.findall(r"\w+", path.read_text(encoding="utf-8")))
     for path in (REPO / "data").glob("*.csv"):
         found |= set(re.findall(r"\w+", path.read_text(encoding="utf-8")))

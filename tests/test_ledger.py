@@ -5,6 +5,7 @@ from concurrent.futures import Executor, Future
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import ledger as paper
 import rdk
@@ -127,6 +128,34 @@ def test_bands_that_ask_only_for_a_report_and_bands_that_cannot_be_read():
 @pytest.mark.parametrize("accept", TARGETS.accept.unique())
 def test_every_band_of_the_file_can_be_read(accept):
     assert paper.accepts(accept, (1.0, 2.0)) in (True, False, None)
+
+
+# ---- load transfer -----------------------------------------------------------------------------------------
+
+def test_load_transfer_by_moments_written_out():
+    """Axle loads from the balance of moments, pulls wheel by wheel."""
+    scenario = rdk.scenario("equatorial_mare_traverse")
+    for name, axles in ("Rashid-1", [-0.5, 0.5]), ("Pragyan", [-0.5, 0.0, 0.5]):
+        rover = rdk.rover(name)
+        weight = rdk.evaluate(rover, scenario).total_mass_kg * 1.625
+        slope, height = math.radians(25), 0.4
+        # loads linear in position, n = a + b x: sum n = W cos, sum n x = W sin h (lengths in wheelbases)
+        a = weight * math.cos(slope) / len(axles)
+        b = weight * math.sin(slope) * height / sum(x * x for x in axles)
+        pull = [2 * rdk.terramechanics.wheel_forces(rover.wheel, scenario.soil, n / 2, 0.6).drawbar_pull_n
+                for n in [a] + [a + b * x for x in axles]]
+        expected = 100 * (sum(pull[1:]) / (len(axles) * pull[0]) - 1)
+        # a difference of nearly equal pulls, each solved to about 1e-9
+        assert_allclose(paper.load_transfer(rover, scenario), expected, rtol=1e-4)
+
+
+def test_load_transfer_broadcasts_and_knows_its_limits():
+    scenario, rover = rdk.scenario("equatorial_mare_traverse"), rdk.rover("Rashid-1")
+    change = paper.load_transfer(rover, scenario, height_to_wheelbase=[0.0, 0.2, 0.4, 1.2])
+    assert change[0] == 0 and np.isnan(change[3]), "at 1.2 the upper axle lifts off"
+    assert abs(change[1]) < abs(change[2])
+    with pytest.raises(ValueError, match="height_to_wheelbase"):
+        paper.load_transfer(rover, scenario, height_to_wheelbase=-0.1)
 
 
 # ---- rows that rest on searches ------------------------------------------------------------------------------

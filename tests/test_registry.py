@@ -7,7 +7,8 @@ from numpy.testing import assert_allclose
 from scipy import stats
 
 import rdk
-from rdk import catalog, registry, validation
+import registry
+from rdk import catalog, validation
 from rdk.mass import mass_breakdown
 
 

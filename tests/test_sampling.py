@@ -14,8 +14,9 @@ from hypothesis.extra.numpy import arrays
 
 import rdk
 from rdk import catalog, sampling
-from rdk.uncertainty import inputs_at, interval_coverage, uncertain_inputs, uncertain_names
+from rdk.uncertainty import inputs_at, uncertain_inputs, uncertain_names
 from rdk.validation import single_wheel
+from wheel_coverage import interval_coverage
 
 MARE = rdk.scenario("equatorial_mare_traverse")
 RASHID, TENACIOUS = rdk.rover("Rashid-1"), rdk.rover("Tenacious")

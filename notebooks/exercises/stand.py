@@ -5,7 +5,8 @@ from functools import cache
 
 import numpy as np
 
-from rdk import registry, stability, terramechanics
+import registry
+from rdk import stability, terramechanics
 from rdk.design import Model
 from rdk.mission import evaluate
 

@@ -16,13 +16,13 @@ import math
 import numpy as np
 import pandas as pd
 
-from . import catalog
-from ._fields import check
-from .design import Model
-from .mass import mass_breakdown
-from .mission import MASS_COEFFICIENTS
-from .uncertainty import DRAWS, inputs_at, uncertain_names
-from .validation import anchor_torque_nm
+from rdk import catalog
+from rdk._fields import check
+from rdk.design import Model
+from rdk.mass import mass_breakdown
+from rdk.mission import MASS_COEFFICIENTS
+from rdk.uncertainty import DRAWS, inputs_at, uncertain_names
+from rdk.validation import anchor_torque_nm
 
 GROWING = ("wheel_radius_m", "wheel_width_m", "chassis_mass_kg", "solar_area_m2", "battery_capacity_wh",
            "avionics_power_w", "payload_mass_kg")
