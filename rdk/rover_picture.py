@@ -21,8 +21,10 @@ STYLE = (".rdk-svg{font:11.5px system-ui,'Segoe UI','DejaVu "
          ".f3{fill:currentColor}"
          ".rdk-svg .o{stroke:currentColor;stroke-width:1.6;fill:var(--rdk-part,#e6ebf2)}"
          ".rdk-svg .soil{fill:var(--rdk-soil,#e4e0da)}.rdk-svg .bad{stroke:var(--rdk-red,#b42318);stroke-width:2.6}"
-         ".rdk-svg text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}")
-"""Styles of every SVG of the collection; a page may set the variables, as the explorer does for dark themes."""
+         ".rdk-svg text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}:root.rdk-svg{background:#fff}")
+"""Styles of every SVG of the collection; a page may set the variables, as the explorer does for dark themes.
+
+A picture that stands alone, such as a notebook's output, knows nothing of its page and brings a white ground."""
 DENSITY_KG_M3 = 145.0                                    # of a rover's envelope: sizes the sketched body
 TRACK_RATIO = 0.9                                        # of track to wheelbase
 A4_M = 0.21, 0.297
@@ -35,11 +37,12 @@ def svg(width, height, body, words, role="img"):
             f'height="{height:g}" role="{role}" aria-label="{html.escape(words)}"><style>{STYLE}</style>{body}</svg>')
 
 
-def rover_picture(design, performance=None, scenario=None, *, width=300):
+def rover_picture(design, performance=None, scenario=None, *, width=300, scale=None):
     """A single rover from the side and from above, as the text of an SVG element; show it by `IPython.display.SVG`.
 
     Wheels, grousers, wheelbase, array, sinkage, slope and tilt are to scale; the body is sketched from the mass. With
     `performance` the wheels sink and what fails is marked; with `scenario` the rover stands on its slope, array tilted.
+    `scale` is in pixels for a metre, for rovers side by side; else the rover fills the width.
     """
     slope = 0.0 if scenario is None else float(scenario.slope_deg)
     tilt = 0.0 if scenario is None else float(scenario.panel_tilt_deg)
@@ -53,7 +56,7 @@ def rover_picture(design, performance=None, scenario=None, *, width=300):
     length, tall = max(base * 0.96, 0.2), float(np.clip(0.4 * np.cbrt(mass / DENSITY_KG_M3), 0.07, 0.45))
     floor = r - sunk + 0.25 * r
     roof = floor + tall
-    middle = roof + 0.03 + side / 2 * np.sin(np.radians(tilt))               # height of the array's centre
+    middle = roof + 0.03 + side / 2 * abs(np.sin(np.radians(tilt - slope)))  # of the array, clear of the roof
 
     def turned(x, z, angle=slope):
         cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
@@ -66,7 +69,7 @@ def rover_picture(design, performance=None, scenario=None, *, width=300):
     tips = [(cx + way * side / 2 * np.cos(lean), cz + way * side / 2 * np.sin(lean)) for way in (-1, 1)]
     xs, zs = np.array(corners + tips).T
     above = max(depth + b, side * np.cos(lean), 0.3)
-    scale = min((width - 66) / np.ptp(xs), 210 / np.ptp(zs), 130 / above)
+    scale = scale or min((width - 66) / np.ptp(xs), 210 / np.ptp(zs), 130 / above)
     left = (width - 46 - scale * np.ptp(xs)) / 2 - scale * xs.min()
     level = 24 + scale * zs.max()
     height = level - scale * zs.min() + 8
@@ -130,14 +133,13 @@ def rover_picture(design, performance=None, scenario=None, *, width=300):
     said = "; ".join(bad.values())
     words = (f"Rover to scale: {design.wheel_count} wheels of {1000 * r:.0f} mm radius and {1000 * b:.0f} mm width, "
              "wheelbase "
-             f"{base:g} m, on a slope of {slope:g} degrees, array of {design.solar_area_m2:.3g} m2 tilted {tilt:g} "
+             f"{base:.3g} m, on a slope of {slope:g} degrees, array of {design.solar_area_m2:.3g} m2 tilted {tilt:g} "
              "degrees"
              + ("" if p is None or p.buried else f", wheels {1000 * sunk:.0f} mm deep")
              + (f". Marked: {said}" if said else "")
              + ".")
     notes = (f'<text class="q s b" x="4" y="14">side, on {slope:g}°</text><text class="q s b" x="4" '
-             f'y="{top + 4:.0f}">top</text>'
-             f'<text class="q s" x="4" y="{end:.0f}">wheelbase {base:g} m</text>'
+             f'y="{top + 4:.0f}">top, wheelbase {base:.3g} m</text>'
              + (f'<text class="bad s e" x="{width - 4}" y="{end:.0f}">{html.escape(said)}</text>' if said else ""))
     scene = f'<svg width="{width}" height="{height:.0f}">{scene}</svg>'       # cuts off the soil beyond
     return svg(width, round(end + 6), scene + sheet + plan + notes, words)

@@ -133,7 +133,7 @@ def test_checks_and_appendices_are_folded(notebook, code):
 def test_every_picture_is_followed_by_words(notebook):
     cells = notebook.cells
     for cell, following in zip(cells, cells[1:] + [None]):
-        if any("image/png" in output.get("data", {}) for output in cell.get("outputs", [])):
+        if any({"image/png", "image/svg+xml"} & set(output.get("data", {})) for output in cell.get("outputs", [])):
             assert following is not None and following.cell_type == "markdown", cell.source
 
 

@@ -1,4 +1,6 @@
 """Pictures of the evaluator and of missions draw what they are given, and the diagram is what the code does."""
+import re
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -196,3 +198,15 @@ def test_nothing_written_on_a_sketch_is_cut_off(name):
             box = text.get_window_extent()
             inside = box.x0 > -1 and box.y0 > -1 and box.x1 < width + 1 and box.y1 < height + 1
             assert inside or not text.get_text(), text
+
+
+# ---- rovers side by side -----------------------------------------------------------------------------------
+
+def test_rovers_side_by_side_are_on_one_scale_and_have_words():
+    large = RASHID.replace(wheel_radius_m=0.15)          # too large for its hubs on the polar slope
+    drawn = plots.rovers({"small": (RASHID, rdk.evaluate(RASHID, POLAR)), "large": (large, rdk.evaluate(large, POLAR))},
+                         POLAR)
+    radius = [float(r) for r in re.findall(r'<circle class="o" [^>]* r="([^"]*)"', drawn.data)]
+    assert len(radius) == 4
+    np.testing.assert_allclose(radius[2] / radius[0], 1.5, rtol=5e-3)    # drawn to 0.1 px
+    assert re.search("small: .* 100 mm radius.* large: .*Marked: hubs too weak", repr(drawn))
