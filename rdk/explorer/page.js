@@ -1,10 +1,12 @@
 (root => {
 if (root.dataset.alive) return; root.dataset.alive = 1;
 const one = q => root.querySelector(q), all = q => [...root.querySelectorAll(q)], app = !!one('[data-app]');
-let last = 0, acked = 0, queue = [], timer, seen = '', size = '', pressed = '', tab = '', view = '';
+let last = 0, acked = 0, queue = [], timer, seen = '', size = '', pressed = '', tab = '', view = '', link, naming = 0;
 const send = (...event) => {
-    queue = queue.filter(e => e[0] > acked && !(e[1] === event[0] && e[2] === event[1] && event[0] !== 'do'));
+    queue = queue.filter(e => e[0] > acked); const before = queue.at(-1);        /* only a drag's way is forgotten */
+    if (before && event[0] === 'slide' && before[1] === 'slide' && before[2] === event[1]) queue.pop();
     last = Math.max(Date.now(), last + 1); queue.push([last, ...event]);
+    one('.rdk-picture').classList.add('rdk-waiting');
     const box = one('.rdk-bridge input'); box.value = JSON.stringify(queue);
     box.dispatchEvent(new Event('input', {bubbles: true})); box.dispatchEvent(new Event('change', {bubbles: true}));
     clearTimeout(timer); timer = setTimeout(() => root.classList.add('rdk-lost'), 8000);
@@ -36,8 +38,9 @@ const apply = () => {
     one('.rdk-picture').classList.toggle('rdk-waiting', d.busy || acked < last);
     if (d.c.view !== view) { view = d.c.view; setTimeout(measure, 60); }
     const bar = one('progress'); bar.max = d.p[1]; bar.value = d.p[0]; bar.hidden = !d.p[2];
-    if (app && d.link !== undefined) history.replaceState(null, '', location.pathname + (d.link ? '?' + d.link : ''));
+    if (app) { link = d.link; naming ||= setTimeout(name, 100); }       /* browsers ignore calls that come faster */
 };
+const name = () => { naming = 0; history.replaceState(null, '', location.pathname + (link ? '?' + link : '')); };
 const deliver = () => { const a = one('a[data-deliver]'); if (a) { a.removeAttribute('data-deliver'); a.click(); } };
 const copy = text => (navigator.clipboard ? navigator.clipboard.writeText(text) : Promise.reject()).catch(() => {
     const box = document.createElement('textarea'); box.value = text; document.body.append(box); box.select();
@@ -53,15 +56,14 @@ root.addEventListener('change', e => { const i = e.target; delete i.dataset.typi
     if (i.type === 'file') { const file = i.files[0]; if (file) file.text().then(text => {
         send('do', 'load', file.name, text); i.value = ''; }); }
     else if (i.matches('.rdk-box')) send('type', i.dataset.in, i.value);
-    else if (i.matches('select')) { send('choose', i.dataset.in, i.value);
-        one('.rdk-picture').classList.add('rdk-waiting'); } });
+    else if (i.matches('select')) send('choose', i.dataset.in, i.value); });
 root.addEventListener('click', e => { const b =
     e.target.closest('[data-do],[data-name],[data-view],[data-tab],[data-js]'); if (!b) return;
     const menu = b.closest('.rdk-bar details'); if (menu) menu.open = false;
     if (b.dataset.do) { pressed = b.dataset.do; send('do', b.dataset.do); }
     else if (b.dataset.name) send('choose', b.dataset.name, b.dataset.value);
     else if (b.dataset.view) { all('[data-view]').forEach(t => t.setAttribute('aria-selected', t === b));
-        one('.rdk-picture').classList.add('rdk-waiting'); send('choose', 'view', b.dataset.view); }
+        send('choose', 'view', b.dataset.view); }
     else if (b.dataset.tab) { tab = b.dataset.tab; pages(); }
     else if (b.dataset.js === 'open') one('[type=file]').click();
     else if (b.dataset.js === 'skip') { const v = one('.rdk-say1'); v.tabIndex = -1; v.focus(); }
