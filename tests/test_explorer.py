@@ -48,7 +48,7 @@ def explorer(made):
              front_x="total_mass_kg", front_y="slope_capability_deg", front_colour="range_km")
     made._past.clear()
     made._future.clear()
-    made._last = ("", 0.0)
+    made._drag = ("", 0)
     made.settle()
     return made
 

@@ -132,11 +132,11 @@ class Explorer(State):
                         getattr(self, "_on_" + kind)(*arguments)
                     except ValueError as error:
                         self._notice = ("alert", str(error))
-        self._refresher.poke()
+            self._refresher.poke()
 
     def _on_slide(self, name, position):
         if position != NUMBERS[name].position(self.state[name]):
-            self.set(**{name: NUMBERS[name].at(position)})
+            self._move({name: NUMBERS[name].at(position)}, (name, self._heard))      # events count milliseconds
 
     def _on_type(self, name, text):
         value, said = NUMBERS[name].read(text) if name in NUMBERS else (text, "")
@@ -218,10 +218,11 @@ class Explorer(State):
     def _refresh(self):
         """Compute the present state and show it; an error becomes a message, never a traceback in a thread."""
         with self._lock:
-            now = dict(self.state)
+            now, heard = dict(self.state), self._heard
             design, scenario, model, before = self.design, self.scenario, self.model, self._before
         see, view = self.parts, now["view"]
-        self._tell(busy=view in SLOW or view != self._shown)
+        if view in SLOW or view != self._shown:
+            self._tell(heard, busy=True)
         try:
             result = evaluate(design, scenario, model=model)
             binding = explain.binding(design, scenario, result, model=model)
@@ -230,17 +231,18 @@ class Explorer(State):
                                                                before, model, old=True)
             see["side"].value = rover_picture(design, result, scenario, width=290)
             self._show(now, design, scenario, model, result, None)
+            self._show_tray(scenario, model, result)
+            self._tell(heard, busy=self._refresher.overtaken)
             if not self._refresher.overtaken:            # intervals for the newest state alone
                 self.intervals = intervals(design, scenario, draws=answers.DRAWS, model=model)
-                see["verdict"].value, self._table = answers.answer(design, scenario, result, binding, self.intervals,
-                                                                   before, model)
                 if view in ("fleet", "mass") or view == "log" and self._size[0] >= WIDE:     # they show intervals
                     self._show(now, design, scenario, model, result, self.intervals)
-                self._show_tray(scenario, model, result)
+                see["verdict"].value, self._table = answers.answer(design, scenario, result, binding, self.intervals,
+                                                                   before, model)
         except Exception as error:                       # anything at all: the app must go on and say what happened
             self.error, self._picture = f"{type(error).__name__}: {error}", ""
             see["picture"].value = f'<div role="alert">{html.escape(self.error)}</div>'
-        self._tell(busy=False)
+            self._tell(heard)
 
     def _show(self, now, design, scenario, model, result, sure):
         """Draw the view, and beside it another where the page is wide."""
@@ -324,8 +326,8 @@ class Explorer(State):
                  if len({getattr(d, name) for d in designs}) > 1]
         return page.table(("", "now", *(f"{letter} {name}" for (letter, *_), (name, _) in zip(PINS, self._pins))), rows)
 
-    def _tell(self, busy):
-        """Send the values of all inputs and the small texts to the page."""
+    def _tell(self, heard, busy=False):
+        """Send the values of all inputs and the small texts to the page; `heard` is the last event that is answered."""
         with self._lock:
             now, link = self.state, self.link
             numbers = {name: (f.position(now[name]), f.words(now[name]),
@@ -341,7 +343,7 @@ class Explorer(State):
             chosen = {name: str(now[name]) for name in (*self.menus, "start_utc")}
             off = {"undo": not self._past, "redo": not self._future, "run": bool(self._thread),
                    "lightest": bool(self._thread), "cancel": not self._thread}
-            told = {"ack": self._heard, "v": numbers, "c": chosen, "t": texts, "off": off,
+            told = {"ack": heard, "v": numbers, "c": chosen, "t": texts, "off": off,
                     "p": (done, of, bool(self._thread)), "link": link, "share": link, "busy": busy}
             (role, notice), (head, body) = self._notice, self._drawer
         said = f'<div role="{role}">{html.escape(notice)}</div>' if notice else ""
@@ -405,7 +407,7 @@ class Explorer(State):
                 self._change_design(found.design)
             self._thread, self._status = None, said
             self._notice = ("alert" if found is None or found.message else "status", said)
-        self._poke()
+            self._poke()
 
     def _search(self, scenario, model, problem):
         """The search's thread: progress, a growing front, cancel."""
@@ -429,7 +431,7 @@ class Explorer(State):
             front, recipe, done = None, None, f"the search failed: {error}"
         with self._lock:
             self.front, self._recipe, self._thread, self._status = front, recipe, None, done
-        self._refresher.poke()
+            self._refresher.poke()
 
     def solve(self, name):
         """Move one design variable to the nearest value that meets the demands; a notice says what came of it."""

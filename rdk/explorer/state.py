@@ -6,7 +6,6 @@ import dataclasses
 import functools
 import math
 import threading
-import time
 
 import numpy as np
 
@@ -39,7 +38,7 @@ class State:
         self.menus, self.front, self.result = choices(), None, None
         self._model, self._recipe, self._before = model, None, None
         self._lock = threading.RLock()
-        self._past, self._future, self._last, self._pins = [], [], ("", 0.0), []
+        self._past, self._future, self._drag, self._pins = [], [], ("", 0), []
         self._notice = ("", "")
         self._catalogue = {name: catalog.scenario(name) for name in catalog.scenario_names()}
         self._soils = {name: catalog.soil(name) for name in catalog.soil_names()}
@@ -108,11 +107,14 @@ class State:
         ValueError
             If there is no such input, or it does not take the value; the message says what is allowed.
         """
+        self._move(values)
+
+    def _move(self, values, drag=("", 0)):
         checked = {name: check(name, value, self.menus) for name, value in values.items()}
         with self._lock:
             moved = [name for name, value in checked.items() if self.state[name] != value]
             if any(name in RESTORED or name in ("rover", "mission", "soil") for name in moved):
-                self._remember(tuple(checked))
+                self._remember(drag)
             for name, value in checked.items():
                 self._assign(name, value)
             self._name()
@@ -129,7 +131,7 @@ class State:
     def reset(self, name=None):
         """Back to the rover and mission last chosen, or one input of them."""
         with self._lock:
-            self._remember(("reset", name))
+            self._remember()
             self._restore(self._base if name is None else {**self._snapshot(), name: self._base[name]})
         self._poke()
 
@@ -249,21 +251,20 @@ class State:
         self.state |= {name: value for name, value in kept.items() if name}
         self._name()
 
-    def _remember(self, key):
-        """Keep the state before a change; a slider's drag counts as one."""
-        now = time.monotonic()
-        if not (key == self._last[0] and now - self._last[1] < 1.5 and self._past):
+    def _remember(self, drag=("", 0)):
+        """Keep the state before a change; a slider's moves that follow within 1.5 s of each other count as one."""
+        if not (drag[0] and drag[0] == self._drag[0] and drag[1] - self._drag[1] < 1500 and self._past):
             self._past.append(self._snapshot())
             self._before = self.result
             del self._past[:-PAST]
-        self._last = key, now
+        self._drag = drag
         self._future.clear()
 
     def _travel(self, source, target):
         with self._lock:
             if source:
                 target.append(self._snapshot())
-                self._before, self._last = self.result, ("", 0.0)
+                self._before, self._drag = self.result, ("", 0)
                 self._restore(source.pop())
         self._poke()
 
@@ -271,7 +272,7 @@ class State:
         """Lay the state of a link over the present one; what is wrong in it is said, the rest taken."""
         wrong = []
         with self._lock:
-            self._remember(("link",))
+            self._remember()
             found = from_text(text)
             for name in sorted(found, key=lambda n: FIRST.index(n) if n in FIRST else len(FIRST)):
                 if name in NUMBERS or name in self.menus or name in SKY:
@@ -285,7 +286,7 @@ class State:
 
     def _change_design(self, design):
         """Take a design, as one step of undo; the baseline stays."""
-        self._remember(("design", time.monotonic()))
+        self._remember()
         said = []
         for name, value in self._values(design).items():
             self.state[name], word = NUMBERS[name].cut(value) if name in NUMBERS else (value, "")
@@ -333,7 +334,7 @@ class State:
             self._poke()
             return
         note = f"{name} loaded"
-        self._remember(("load", time.monotonic()))
+        self._remember()
         if design.shape:
             note += f": {len(design)} designs, shown under Optimise; the first is on the sliders"
             where = plain(self.scenario if mission is None else mission)
