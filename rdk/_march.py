@@ -27,11 +27,12 @@ class TraverseLog(Record):
 
     `discarded_w` is sunlight that a full pack could not take, `unserved_w` demand that an empty one could not meet,
     `battery_loss_w` what charging and discharging cost: solar + unserved = load + discarded + battery loss + rate
-    of change of the stored energy.
+    of change of the stored energy. `lit_fraction` is the share of the sun's disc above horizon or skyline.
     """
     time_h: np.ndarray
     step_h: np.ndarray
     sun_elevation_deg: np.ndarray
+    lit_fraction: np.ndarray
     solar_w: np.ndarray
     load_w: np.ndarray
     mobility_w: np.ndarray
@@ -245,10 +246,11 @@ def _log(lane, times, steps, solar, base_load, mobility, stored, soc, initial, t
     net = solar - load
     accepted = np.maximum(change, 0) / lane.charge_efficiency
     delivered = np.maximum(-change, 0) * lane.discharge_efficiency
-    elevation, _ = power.sun_position(lane.latitude_deg, *(np.ravel(angle) for angle in _sun(times, lane)))
+    elevation, azimuth = power.sun_position(lane.latitude_deg, *(np.ravel(angle) for angle in _sun(times, lane)))
+    lit = 1.0 * (elevation > 0) if lane.skyline is None else sky.lit_fraction(elevation, azimuth, lane.skyline)
     return TraverseLog(
-        time_h=times, step_h=steps, sun_elevation_deg=elevation, solar_w=solar, load_w=load, mobility_w=mobility,
-        stored_wh=stored, soc=soc, throttled=throttled,
+        time_h=times, step_h=steps, sun_elevation_deg=elevation, lit_fraction=lit, solar_w=solar,
+        load_w=load, mobility_w=mobility, stored_wh=stored, soc=soc, throttled=throttled,
         discarded_w=_above_rounding(net - accepted), unserved_w=_above_rounding(-net - delivered),
         battery_loss_w=accepted - np.maximum(change, 0) + np.maximum(-change, 0) - delivered,
         distance_km=np.minimum(np.cumsum(speed_km_h * steps), lane.traverse_limit_km))

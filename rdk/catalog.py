@@ -2,12 +2,14 @@
 
 `data/README.md` is the dictionary of every column; each row names its source.
 """
+import contextlib
 import csv
 import dataclasses
 import functools
 import io
 import json
 import math
+import os
 import re
 from pathlib import Path
 
@@ -216,6 +218,24 @@ def to_json(design: Design, scenario: Scenario | None = None) -> str:
                          f"{design.shape} and {scenario and scenario.shape}")
     kept = {"format": "rdk-design-1", "design": _plain(design)}
     return json.dumps(kept | ({} if scenario is None else {"scenario": _plain(scenario)}), indent=1, allow_nan=False)
+
+
+def write(text: str, path: str | Path) -> Path:
+    """Write a text to a file in one step: readers see the old file or the new one, never half of it."""
+    path = Path(path)
+    if path.is_dir() or not path.name:
+        raise IsADirectoryError(f"path must name a file, such as 'rover.html'; got the folder {str(path)!r}")
+    part = path.with_name(f".{path.name[:100]}.{os.urandom(4).hex()}.part")
+    try:
+        part.write_text(text, encoding="utf-8", newline="\n")
+        os.replace(part, path)
+    except OSError as error:
+        raise type(error)(error.errno, f"cannot write {path.name} there ({error.strerror or error}); give a path in a folder "
+                          "that you may write to", str(path.parent)) from None
+    finally:
+        with contextlib.suppress(OSError):               # gone, unless writing failed half-way
+            part.unlink()
+    return path
 
 
 def _plain(value):

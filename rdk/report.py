@@ -7,16 +7,14 @@ from __future__ import annotations
 import base64
 import functools
 import html as html_module
-import os
 import re
-import tempfile
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from . import catalog, explain, pictures
 from ._fields import require
+from .catalog import write as write
 from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import evaluate
 from .rover_picture import rover_picture
@@ -226,42 +224,6 @@ def write_report(design, scenario, path, title=None, notes="", **options):
     require(design=(design, Design), scenario=(scenario, Scenario))
     return write(report(design, scenario, f"A rover for {scenario.name}" if title is None else title, notes, **options),
                  path)
-
-
-def write(text, path):
-    """Write a text to a file in one step: readers see the old file or the new one, never half of it.
-
-    Parameters
-    ----------
-    text : str
-    path : str or Path
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    OSError
-        If the folder is missing or read-only; the message says what to do.
-    """
-    path = Path(path)
-    if path.is_dir() or not path.name:
-        raise IsADirectoryError(f"path must name a file, such as 'rover.html'; got the folder {str(path)!r}")
-    try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name[:100], suffix=".part")
-    except OSError as error:
-        raise type(error)(error.errno, f"cannot write {path.name} there ({error.strerror}); give a path in a folder "
-                          "that you may write to", str(path.parent)) from None
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-        os.chmod(temporary, 0o644)                       # mkstemp keeps the file from everyone else
-        os.replace(temporary, path)
-    except BaseException:
-        os.unlink(temporary)
-        raise
-    return path
 
 
 def _text(words):

@@ -41,6 +41,13 @@ def demands(wanted, argument: str = "constraints") -> tuple:
     return tuple(tuple(demand) for demand in wanted)
 
 
+def holds(performance: Performance, demand: tuple) -> bool | np.ndarray:
+    """Whether a demand such as ("range_km", ">=", 30) holds; not where the field is NaN."""
+    name, sign, limit = demand
+    value = np.asarray(getattr(performance, name), float)
+    return value >= limit if sign == ">=" else value <= limit
+
+
 # ---- designs and genes ----------------------------------------------------------------------------------------
 
 def random_designs(count: int, seed: int | None = None, bounds: dict | None = None) -> Design:
@@ -117,8 +124,8 @@ class Sweep(Shown):
         return f"Sweep of {len(frame)} points over {' and '.join(self.fields)}", frame.iloc[:, shown]
 
 
-def _single(**records):
-    """Refuse what is no record, and records that hold arrays."""
+def single(**records) -> None:
+    """Refuse what is no record, and records that hold arrays; by name: scenario, model, and any name for a design."""
     kinds = {"scenario": Scenario, "model": Model}
     require(**{name: (record, kinds.get(name, Design)) for name, record in records.items()})
     for name, record in records.items():
@@ -157,7 +164,7 @@ def sweep(design: Design, scenario: Scenario, over: dict, *, model: Model = Mode
     >>> s.performance.slip.round(2)
     array([0.09, 0.26, 0.5 ])
     """
-    _single(design=design, scenario=scenario, model=model)
+    single(design=design, scenario=scenario, model=model)
     if not isinstance(over, dict) or not 1 <= len(over) <= 2:
         raise ValueError(f"over must be a dictionary of one or two fields with their values; got {over!r}")
     if "duration_earth_days" in over:
@@ -259,11 +266,10 @@ class Intervals(Shown):
 
     def share(self, wanted) -> float | np.ndarray:
         """Joint share of draws in which *all* demands hold, such as [("range_km", ">=", 30)]; by design."""
-        holds = np.ones(self.draws.shape, bool)
-        for name, sign, limit in demands(wanted, "demands"):
-            value = getattr(self.draws, name)
-            holds &= value >= limit if sign == ">=" else value <= limit     # NaN holds nothing
-        return holds.mean(0)[()]
+        met = np.ones(self.draws.shape, bool)
+        for demand in demands(wanted, "demands"):
+            met &= holds(self.draws, demand)
+        return met.mean(0)[()]
 
     def to_frame(self):
         """A pandas DataFrame: one row a metric (one design only); `clamped` names the ends that are."""
@@ -358,7 +364,7 @@ def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: 
     >>> bool(np.isclose(why.contributions["total_mass_kg"].sum(), difference))
     True
     """
-    _single(design=design, baseline=baseline, scenario=scenario, model=model)
+    single(design=design, baseline=baseline, scenario=scenario, model=model)
     differ = np.array([getattr(design, name) != getattr(baseline, name) for name in DESIGN_SPACE])
     count = int(differ.sum())
     takes = np.zeros((2**count, len(differ)), bool)                  # (mixtures, variables): from the design?

@@ -8,7 +8,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
-import os
 import warnings
 from collections.abc import Callable, Sequence
 from functools import cached_property
@@ -81,10 +80,7 @@ class Front(Shown):
         kept = json.loads(catalog.to_json(self.designs, self.scenario)) | {
             "model": plain(self.model), "problem": plain(self.problem), "message": self.message,
             "objective_history": [F.tolist() for F in self.objective_history]}
-        path = Path(path)
-        part = path.with_name(f".{path.name}.{os.getpid()}.part")
-        part.write_text(json.dumps(kept, allow_nan=False), encoding="utf-8")
-        os.replace(part, path)
+        catalog.write(json.dumps(kept, allow_nan=False), path)
 
     @classmethod
     def load(cls, path: str | Path) -> Front:

@@ -686,7 +686,7 @@ def test_a_file_is_complete_or_absent(tmp_path, serial, monkeypatch):
 
     front, path = next(iter(serial.values())), tmp_path / "front.json"
     with monkeypatch.context() as broken:
-        broken.setattr(ts.os, "replace", full)
+        broken.setattr(catalog.os, "replace", full)
         with pytest.raises(OSError, match="no space"):
             front.save(path)
     assert not path.exists()
