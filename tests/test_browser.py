@@ -337,7 +337,7 @@ def test_a_reload_loses_nothing(page, app):
     for text in "2026-11-26T12:00", "soon":              # the second before the first is answered
         box(explorer, "start_utc").fill(text)
         box(explorer, "start_utc").press("Enter")
-    expect(explorer.locator(".rdk-drawer")).to_contain_text("must be an ISO date")
+    expect(explorer.locator(".rdk-drawer")).to_contain_text("must be UTC in ISO form")
     expect(box(explorer, "start_utc")).to_have_value("2026-11-26T12:00")
     expect(box(explorer, "latitude_deg")).to_have_value("-89.78")
     expect(page).to_have_url(re.compile("start_utc=2026"))

@@ -17,7 +17,8 @@ ROWS = {"soils.csv": 11, "scenarios.csv": 14, "rovers.csv": 13, "flown.csv": 2, 
         "single_wheel_more.csv": 71, "uncertainties.csv": 22, "skyline_sites.csv": 48, "skylines.csv": 360,
         "published_light.csv": 6,
         "subsolar_points.csv": 21, "sun_horizons_2024.csv": 96, "ridge_route.csv": 136,
-        "ridge_route_skylines.csv": 180, "ridge_light_2026.csv": 61, "slope_histograms.csv": 45}
+        "ridge_route_skylines.csv": 180, "ridge_light_2026.csv": 61, "slope_histograms.csv": 45,
+        "explorer_inputs.csv": 38}
 UNITS = {"_deg": "deg", "_kn_m_n1": "kN/m^(n+1)", "_kn_m_n2": "kN/m^(n+2)", "_kpa": "kPa", "_mm": "mm",
          "_kg_m3": "kg/m3", "_kg": "kg", "_km": "km", "_days": "Earth days", "_w": "W", "_wh": "Wh",
          "_nm": "N m", "_m2": "m2", "_n": "N", "_m": "m", "_c": "degC", "_pct": "%", "_date": "days"}
@@ -134,7 +135,7 @@ def test_every_source_is_in_the_bibliography():
         named = re.findall(r"`(\w+)`", section.partition("Sources")[2])
         assert named and set(named) <= set(BIBLIOGRAPHY), name
     for name, rows in TABLES.items():
-        for row in [] if name in PATTERNS else rows:
+        for row in [] if name in PATTERNS or name == "explorer_inputs.csv" else rows:         # words and spans are ours
             if row.get("origin") == "collection" and not row["source"]:                # assumed here, and says so
                 assert row["status"] == "imputed" and row["note"]
                 continue

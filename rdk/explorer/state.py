@@ -6,6 +6,7 @@ import dataclasses
 import functools
 import math
 import threading
+from urllib.parse import urlencode
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from ..terramechanics import Soil
 from ..tradespace import Front
 from . import answers
 from .inputs import (COEFFICIENTS, DEMANDS, DESIGN, GOALS, MISSION, NONE, NUMBERS, OWN, RESTORED, SKY, SOIL, START,
-                     check, choices, from_text, title, to_text)
+                     check, choices, from_text, title)
 
 PINS = ("A", "c1", "#c04a00"), ("B", "c2", "#007a59"), ("C", "c3", "#6a7488")
 PAST = 200                                               # states that undo remembers
@@ -97,7 +98,7 @@ class State:
                                                                                   for name in COEFFICIENTS}}
         if rover == OWN:
             base |= dict.fromkeys(DESIGN, None) | {"wheel_count": None}
-        return to_text(self.state, base)
+        return urlencode({name: self.state[name] for name in base if self.state[name] != base[name]})
 
     def set(self, **values):
         """Set inputs by name, such as `slope_deg=20`, `soil="fjs-1"`, `view="why"` or `population=30`.
@@ -306,7 +307,7 @@ class State:
             others = {f"{letter} {title}": d for (letter, *_), (title, d) in zip(PINS, self._pins)}
             front = self.front if self.front is not None and self._fits(self.front, scenario, self.model) else None
             return report(design, scenario, f"{self.state['rover'] if self.state['rover'] != OWN else 'A rover'} for "
-                          f"{title_of(scenario)}",
+                          f"{title(scenario.name)}",
                           model=self.model, front=front, candidates=others)
         made = {"design.json": lambda: catalog.to_json(design, scenario),
                 "design.csv": lambda: catalog.to_csv(design, self.result),
@@ -372,11 +373,6 @@ def check_variable(name):
     if name not in DESIGN:
         raise ValueError(f"no design variable {name!r} to solve for; choose from {', '.join(DESIGN)}")
     return name
-
-
-def title_of(scenario):
-    """A mission's name in human words, wherever it comes from."""
-    return title(scenario.name) if scenario.name in catalog.scenario_names() else scenario.name
 
 
 def plain(scenario):
