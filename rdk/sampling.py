@@ -21,11 +21,11 @@ METRICS = tuple(f.name for f in dataclasses.fields(Performance) if f.name not in
 READINGS = ("range_km", "total_mass_kg", "slope_capability_deg", "slip", "energy_balance_pct")   # of a short table
 
 
-def demands(wanted, argument: str = "constraints") -> tuple:
+def demands(wanted, argument: str = "constraints", may_contradict: bool = False) -> tuple:
     """Demands like ("range_km", ">=", 30), checked: fields of Performance, limits that do not contradict each other."""
     if not isinstance(wanted, (list, tuple)) or not all(isinstance(c, (list, tuple)) for c in wanted):
         raise ValueError(f"{argument} must be a list of (field, '>=' or '<=', limit); got {wanted!r}")
-    limits = {}
+    limits, found = {}, []
     for demand in wanted:
         if len(demand) != 3 or demand[1] not in (">=", "<="):
             raise ValueError(f"{argument} must be like ('range_km', '>=', 0.1); got {demand!r}")
@@ -33,12 +33,14 @@ def demands(wanted, argument: str = "constraints") -> tuple:
         if name not in METRICS:
             raise unknown(f"{argument}: no Performance field", name, METRICS)
         both = limits.setdefault(name, {">=": -math.inf, "<=": math.inf})
-        limit = check(f"{argument}: limit of {name}", limit, scalar=True)
+        flag = isinstance(limit, (bool, np.bool_))
+        limit = check(f"{argument}: limit of {name}", float(limit) if flag else limit, scalar=True)
+        found.append((name, sign, limit))
         both[sign] = max(both[sign], limit) if sign == ">=" else min(both[sign], limit)
     for name, both in limits.items():
-        if both[">="] > both["<="]:
+        if both[">="] > both["<="] and not may_contradict:
             raise ValueError(f"{argument} contradict each other: {name} >= {both['>=']:g} and <= {both['<=']:g}")
-    return tuple(tuple(demand) for demand in wanted)
+    return tuple(found)
 
 
 def holds(performance: Performance, demand: tuple) -> bool | np.ndarray:
@@ -99,6 +101,16 @@ def encode(designs: Design, bounds: dict | None = None) -> np.ndarray:
     columns = np.broadcast_arrays(*(np.atleast_1d(getattr(designs, name)) for name in DESIGN_SPACE))
     genes = (np.stack(columns, axis=1) - low) / np.where(high > low, high - low, 1)
     return np.clip(genes, 0, 1)
+
+
+def light_corner(genes: np.ndarray) -> None:
+    """Move genes, shape (..., 11), in place to where light designs lie: least width, avionics and wheel count; chassis,
+    array, battery and torque mostly little.
+    """
+    names = list(DESIGN_SPACE)
+    genes[..., [names.index(name) for name in ("wheel_width_m", "avionics_power_w", "wheel_count")]] = 0
+    genes[..., [names.index(name) for name in ("chassis_mass_kg", "solar_area_m2", "battery_capacity_wh",
+                                               "peak_wheel_torque_nm")]] **= 3
 
 
 # ---- sweeps ---------------------------------------------------------------------------------------------------

@@ -20,7 +20,7 @@ from . import catalog
 from ._fields import Shown, check, require, unknown
 from .design import DESIGN_SPACE, Design, Model, Problem, Scenario
 from .mission import Performance, evaluate
-from .sampling import METRICS, decode, demands, encode
+from .sampling import METRICS, decode, demands, encode, light_corner
 
 FAILED = 1e9                                             # objective and violation of a lane without a solution
 RANKED_DECIMALS = 8                                      # objectives are compared no finer: see `nsga2`
@@ -311,7 +311,7 @@ def budget(population, generations):
 def _first_generation(start, bounds):
     """pymoo's sampling: uniform; half in the light corner; or known designs filled up with uniform ones."""
     from pymoo.operators.sampling.rnd import FloatRandomSampling
-    names, designs = list(DESIGN_SPACE), getattr(start, "designs", start)
+    designs = getattr(start, "designs", start)
     if designs is None or (isinstance(designs, Design) and designs.shape == (0,)):
         return FloatRandomSampling()
     if not isinstance(designs, Design) and not (isinstance(start, str) and start == "light"):
@@ -321,10 +321,7 @@ def _first_generation(start, bounds):
         def _do(self, mission, n_samples, *args, **kwargs):
             genes = super()._do(mission, n_samples, *args, **kwargs)
             if isinstance(start, str):
-                half = genes[:n_samples // 2]            # a view
-                half[:, [names.index(n) for n in ("wheel_width_m", "avionics_power_w", "wheel_count")]] = 0
-                half[:, [names.index(n) for n in ("chassis_mass_kg", "solar_area_m2", "battery_capacity_wh",
-                                                  "peak_wheel_torque_nm")]] **= 3
+                light_corner(genes[:n_samples // 2])     # a view
                 return genes
             known = encode(designs, bounds)
             if len(known) > n_samples:
