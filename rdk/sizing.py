@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ._evolution import ELITE, evolve
-from ._fields import Shown, check, require, unknown
+from ._fields import Shown, check, unknown
 from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import Performance, evaluate
-from .sampling import METRICS, decode, encode, random_designs, replaced
+from .sampling import METRICS, decode, demands as checked, encode, light_corner, random_designs, replaced, single
 from .uncertainty import uncertain_inputs
 
 __all__ = ["Demand", "Progress", "Sizing", "prudent_demands", "size"]
@@ -30,8 +30,6 @@ HOPELESS, NEARLY = 0.05, 0.01                            # shares missing: no la
 FIRST_LOOK = 4                                           # a quarter of the draws comes first, the hardest
 FRESH_DRAWS, FRESH_SEED = 20_480, 7_919                  # of the odds; the seed is added to that of the search
 LANES = 2**15                                            # designs x draws evaluated at once
-LIGHT = ("wheel_width_m", "avionics_power_w")            # least in half of the first generation ...
-SKEWED = ("chassis_mass_kg", "solar_area_m2", "battery_capacity_wh", "peak_wheel_torque_nm")     # ... drawn as u^3
 TIGHT = 0.005                                            # a demand holds the design within this share of its limit
 PRICE_STEP = 0.05                                        # share of its limit by which a demand is moved for its price
 WORST = 1e3                                              # shortfall of a demand, in units of its limit, at most
@@ -86,20 +84,19 @@ class _Search:
     @cached_property
     def scales(self):
         """What one unit of shortfall is: the limit of each demand; the usual spread of the field where that is 0."""
-        scales = np.array([abs(demand.limit) for demand in self.demands], float)
-        if not scales.all():
-            usual = evaluate(random_designs(64, seed=0, bounds=self.bounds), self.scenario, model=self.model)
-            for i in np.flatnonzero(scales == 0):
-                value = np.asarray(getattr(usual, self.demands[i].field), float)
-                value = value[np.isfinite(value)]
-                scales[i] = np.subtract(*np.quantile(value, [0.75, 0.25])) if value.size else 0
-        return np.where(scales > 0, scales, 1.0)
+        usual = evaluate(random_designs(64, seed=0, bounds=self.bounds), self.scenario, model=self.model)
 
-    def first(self, random, count=POPULATION, known=None):
+        def spread(field):
+            value = np.asarray(getattr(usual, field), float)
+            value = value[np.isfinite(value)]
+            return np.subtract(*np.quantile(value, [0.75, 0.25])) if value.size else 0
+
+        return np.array([abs(demand.limit) or spread(demand.field) or 1.0 for demand in self.demands])
+
+    def first(self, random, known=None):
         """First generations: half in the light corner, half anywhere; one population a wheel count."""
-        genes, corner = random.random((2, count, len(VARIABLES))), count // 2
-        genes[:, :corner, [VARIABLES.index(name) for name in LIGHT]] = 0
-        genes[:, :corner, [VARIABLES.index(name) for name in SKEWED]] **= 3
+        genes, corner = random.random((2, POPULATION, len(VARIABLES))), POPULATION // 2
+        light_corner(genes[:, :corner])
         if known is not None:
             genes[:, :min(corner, len(known))] = known[:corner]
         genes[..., WHEELS] = [[0], [1]]
@@ -108,17 +105,13 @@ class _Search:
 
     def score(self, genes, *parents):
         """Objective and summed relative shortfall of genes (populations, designs, 11) at the nominal values."""
-        shape = genes.shape[:2]
         found = evaluate(decode(genes.reshape(-1, genes.shape[2]), self.bounds), self.scenario, model=self.model)
-        return tuple(x.reshape(shape) for x in self._judged(found))
-
-    def _judged(self, found):
         objective = np.array(getattr(found, self.minimise), float)
         violation = np.zeros(objective.shape)
         for demand, scale in zip(self.demands, self.scales):
             violation += np.clip(-demand.slack(found) / scale, 0, WORST)
         failed = found.buried | ~np.isfinite(objective)  # a lane without a solution
-        return np.where(failed, np.inf, objective), np.where(failed, np.inf, violation)
+        return tuple(np.where(failed, np.inf, x).reshape(genes.shape[:2]) for x in (objective, violation))
 
     def margins(self, genes, changes):
         """How far inside its limit each demand is, in units of it: (draws, designs, demands). Flags: inf or -1."""
@@ -135,39 +128,6 @@ class _Search:
                 margins[start:start + step, :, i] = np.where(flag & (margin >= 0), np.inf, margin)
         return margins
 
-    def robust(self, changes, confidence, lanes):
-        """A score in which the joint share of draws is a constraint; `lanes` counts the lanes it takes."""
-        draws = len(next(iter(changes.values())))
-        allowed = math.floor((1 - confidence) * draws + 1e-9)
-        look = max(draws // FIRST_LOOK, min(allowed + 1, draws))
-        parts = [{name: value[part] for name, value in changes.items()} for part in (slice(look), slice(look, None))]
-
-        def worst(genes, part):
-            lanes[0] += len(genes) * len(next(iter(part.values())))
-            return self.margins(genes, part).min(2, initial=np.inf)
-
-        def missing(margin):
-            """Share of draws missing, and a little of how far the draw that decides fails: a slope to walk down."""
-            failing, decides = (margin < 0).sum(0), np.partition(margin, allowed, axis=0)[allowed]
-            return np.where(failing > allowed, (failing - allowed) / draws + 0.1 * np.clip(-decides, 0, 1), 0)
-
-        def score(genes, objective=None, violation=None):
-            new, short = self.score(genes)
-            flat, open_ = genes.reshape(-1, genes.shape[2]), np.isfinite(short)
-            hopeless = np.zeros(new.shape, bool)
-            if objective is not None:                    # who cannot replace the parent need not be drawn
-                open_ = (short < violation) | (short == violation) & (new < objective)
-                hopeless = violation == 0                # where one failing draw too many settles it
-            waiting = np.flatnonzero(open_)
-            added = np.full(new.size, np.inf)
-            first = worst(flat[waiting], parts[0])
-            stays = ~(hopeless.ravel()[waiting] & ((first < 0).sum(0) > allowed))
-            rest = worst(flat[waiting[stays]], parts[1]) if look < draws else first[:0, stays]
-            added[waiting[stays]] = missing(np.concatenate([first[:, stays], rest]))
-            return new, short + added.reshape(short.shape)
-
-        return score
-
     def draws(self, count, seed):
         """The uncertain inputs, one value a draw: the same for all designs."""
         return uncertain_inputs(self.scenario, draws=count, seed=seed, model=self.model)
@@ -175,15 +135,12 @@ class _Search:
     def stages(self, known=None):
         """Yield (genes, objective, violation), each by population, after every generation."""
         random = np.random.default_rng(self.seed)
-        genes = self.first(random, known=known)
-        if self.confidence is None:
-            yield from evolve(self.score, genes, random, GENERATIONS, WHEELS)
-            return
+        genes = self.first(random, known)
         for state in evolve(self.score, genes, random, GENERATIONS, WHEELS):
             yield state
-            if state[2].min() == 0:
+            if self.confidence and state[2].min() == 0:
                 break
-        else:                                            # not even at the nominal values
+        else:                                            # no odds asked for, or not even met at the nominal values
             return
         light = (yield from self._stage("light", genes, random))[0]
         state = yield from self._stage("more", light, random)
@@ -198,16 +155,38 @@ class _Search:
             yield from self._stage("last", state[0], random)
 
     def _stage(self, name, genes, random):
-        """Evolve with the draws of a stage; returns the last state."""
+        """Evolve where the joint share of a stage's draws is a constraint, too; returns the last state."""
         draws, designs, generations, margin, budget = STAGES[name]
-        genes, changes, lanes = genes[:, :designs], self.draws(draws, self.seed), [0]
-        # the hardest draws first
-        order = np.argsort(self.margins(genes[0, :ELITE], changes).min((1, 2), initial=np.inf), kind="stable")
-        changes = {name: value[order] for name, value in changes.items()}
-        score = self.robust(changes, self.confidence + margin * (1 - self.confidence), lanes)
+        confidence = self.confidence + margin * (1 - self.confidence)
+        allowed = min(math.floor((1 - confidence) * draws + 1e-9), draws - 1)        # draws that may fail
+        genes, changes, lanes = genes[:, :designs], self.draws(draws, self.seed), 0
+        hardest = np.argsort(self.margins(genes[0, :ELITE], changes).min((1, 2), initial=np.inf), kind="stable")
+        look = max(draws // FIRST_LOOK, allowed + 1)
+        first, rest = ({name: value[part] for name, value in changes.items()}
+                       for part in (hardest[:look], hardest[look:]))
+
+        def score(trials, objective=np.inf, violation=np.inf):
+            nonlocal lanes
+            new, short = self.score(trials)
+            # who cannot replace the parent need not be drawn
+            open_ = (short < violation) | (short == violation) & (new < objective)
+            asked, added = trials[open_], np.full(np.count_nonzero(open_), np.inf)
+            worst = self.margins(asked, first).min(2, initial=np.inf)
+            # of a parent that holds, one failing draw too many settles it
+            stays = ((worst < 0).sum(0) <= allowed) | np.broadcast_to(violation != 0, short.shape)[open_]
+            more = self.margins(asked[stays], rest).min(2, initial=np.inf)
+            lanes += worst.size + more.size
+            worst = np.concatenate([worst[:, stays], more])
+            failing, decides = (worst < 0).sum(0), np.partition(worst, allowed, axis=0)[allowed]
+            # share of draws missing, and a little of how far the draw that decides fails: a slope to walk down
+            added[stays] = np.where(failing > allowed, (failing - allowed) / draws + 0.1 * np.clip(-decides, 0, 1), 0)
+            total = np.full(short.shape, np.inf)
+            total[open_] = short[open_] + added
+            return new, total
+
         for state in evolve(score, genes, random, generations, WHEELS):
             yield state
-            if lanes[0] > budget * (PATIENCE if state[2].min() > 0 else 1):
+            if lanes > budget * (PATIENCE if state[2].min() > 0 else 1):
                 break
         return state
 
@@ -325,22 +304,6 @@ def _best(search, known):
     return min(np.where(violation[:, 0] > 0, np.inf, objective[:, 0]))
 
 
-def _asked(demands):
-    """Demands, checked; they may contradict each other: that is an answer, not an error."""
-    if not isinstance(demands, (list, tuple)) or not all(isinstance(d, (list, tuple)) for d in demands):
-        raise ValueError(f"demands must be a list of (field, '>=' or '<=', limit); got {demands!r}")
-    asked = []
-    for demand in demands:
-        if len(demand) != 3 or demand[1] not in (">=", "<="):
-            raise ValueError(f"demands must be like ('range_km', '>=', 30); got {demand!r}")
-        if demand[0] not in METRICS:
-            raise unknown("demands: no Performance field", demand[0], METRICS)
-        limit = float(demand[2]) if isinstance(demand[2], (bool, np.bool_)) else demand[2]
-        limit = check(f"demands: limit of {demand[0]}", limit, scalar=True)
-        asked.append(Demand(demand[0], demand[1], limit, getattr(demand, "why", "")))
-    return tuple(asked)
-
-
 def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confidence: float | None = None,
          model: Model = Model(), bounds: dict | None = None, seed: int = 0, on_generation=None) -> Sizing:
     """The lightest rover that meets a list of demands on a mission.
@@ -379,16 +342,14 @@ def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confid
     >>> f"{found.performance.total_mass_kg:.2f} kg"
     '8.35 kg'
     """
-    require(scenario=(scenario, Scenario), model=(model, Model))
-    for name, record in ("scenario", scenario), ("model", model):
-        if record.shape:
-            raise ValueError(f"{name} must be a single one for a search; got arrays of shape {record.shape}")
+    single(scenario=scenario, model=model)
     if minimise not in METRICS:
         raise unknown("minimise: no Performance field", minimise, METRICS)
     if confidence is not None:
         confidence = check("confidence", confidence, above=0, below=1, scalar=True)
     seed = int(check("seed", seed, 0, whole=True, scalar=True))
-    asked = _asked(demands)
+    asked = tuple(Demand(*one, getattr(given, "why", "")) for given, one in zip(
+        demands, checked(demands, "demands", may_contradict=True)))
     if scenario.required_obstacle_height_m > 0:
         asked += (Demand("obstacle_capability_m", ">=", scenario.required_obstacle_height_m),)
     search = _Search(scenario, asked, minimise, confidence, model, bounds, seed)
@@ -439,7 +400,7 @@ def prudent_demands(scenario: Scenario) -> tuple[Demand, ...]:
 
     They can have no solution: a served bus at the pole needs more battery than DESIGN_SPACE holds. That is the answer.
     """
-    require(scenario=(scenario, Scenario))
+    single(scenario=scenario)
     return (
         Demand("feasible", ">=", 1, "it drives at all, and gathers the energy that it spends"),
         Demand("slip", "<=", 0.4, "beyond a slip of 0.4 at the mission's slope, measured wheels dig in"),

@@ -178,6 +178,11 @@ def test_confidence_is_joint_and_holds_on_fresh_draws(brisk):
         assert getattr(sure.performance, name) >= limit
 
 
+def test_a_low_confidence_allows_most_draws_to_fail(brisk):
+    found = rdk.size(MARE, [("slope_capability_deg", ">=", 20)], confidence=0.1)
+    assert not found.message and found.odds > 0.08
+
+
 def test_light_designs_that_miss_the_confidence_are_bred_with_sure_ones(brisk, monkeypatch):
     asked, names, stage = [("range_km", ">=", 30), ("slope_capability_deg", ">=", 12)], [], sizing._Search._stage
     monkeypatch.setattr(sizing._Search, "_stage", lambda self, name, *rest: names.append(name) or stage(
