@@ -15,7 +15,7 @@ class Drawing(SVG):
         return re.search('aria-label="([^"]*)"', self.data)[1]
 
 
-def rovers(results, scenario, width=290):
+def rovers(results, scenario, width=260):
     """Rovers side by side, on one scale: `results` is name -> (Design, Performance) on the `scenario`."""
     spans = [max(d.wheelbase_m + 2 * (d.wheel_radius_m + d.grouser_height_m) + 0.06, np.sqrt(d.solar_area_m2))
              for d, _ in results.values()]
