@@ -230,8 +230,8 @@ def write(text: str, path: str | Path) -> Path:
         part.write_text(text, encoding="utf-8", newline="\n")
         os.replace(part, path)
     except OSError as error:
-        raise type(error)(error.errno, f"cannot write {path.name} there ({error.strerror or error}); give a path in a folder "
-                          "that you may write to", str(path.parent)) from None
+        raise type(error)(error.errno, f"cannot write {path.name} there ({error.strerror or error}); give a path in a "
+                          "folder that you may write to", str(path.parent)) from None
     finally:
         with contextlib.suppress(OSError):               # gone, unless writing failed half-way
             part.unlink()

@@ -1,4 +1,4 @@
-"""Words for a result: what binds a design, which limits it meets, and the Python call that reproduces it."""
+"""Words for a result: names and units, what binds a design, which limits it meets, the Python that reproduces it."""
 from __future__ import annotations
 
 import dataclasses
@@ -7,16 +7,20 @@ from typing import NamedTuple
 import numpy as np
 
 from . import catalog
-from ._fields import require
-from .design import DESIGN_SPACE, Design, Model, Scenario
+from .design import DESIGN_SPACE, Model, Scenario
 from .mission import evaluate
-from .pictures import label
-from .sampling import replaced
+from .sampling import holds, replaced, single
 from .sky import Skyline
 from .terramechanics import Soil
 
-
 LEVERS = {"hub speed": "hub_no_load_speed_rad_s", "sun": "solar_area_m2", "battery": "battery_capacity_wh"}
+UNITS = {"kn_m_n1": "kN/mⁿ⁺¹", "kn_m_n2": "kN/mⁿ⁺²", "kg_m2": "kg/m²", "kg_nm": "kg/N m", "kg_w": "kg/W",
+         "wh_kg": "Wh/kg", "rad_s": "rad/s", "m_s": "m/s", "km": "km", "kg": "kg", "nm": "N m", "mm": "mm", "m2": "m²",
+         "wh": "Wh", "kpa": "kPa", "deg": "°", "pct": "%", "m": "m", "w": "W", "c": "°C", "k": "K", "h": "h"}
+WORDS = {"total_mass": "mass", "average_solar_power": "mean sunlight", "final_soc": "charge at the end",
+         "minimum_soc": "lowest charge", "hot_temperature": "noon temperature", "cold_temperature": "night temperature",
+         "thermal_survival": "survival of heat and cold", "energy_balance_speed": "energy-balance speed",
+         "feasible": "drives the mission", "odds": "odds of the demands", "growth": "margin"}
 
 
 class Binding(NamedTuple):
@@ -33,36 +37,45 @@ class Limit(NamedTuple):
     words: str
 
 
+def label(name):
+    """Words and unit of a field by its name, such as ("range", "km") of "range_km"."""
+    unit = next((unit for unit in UNITS if name.endswith("_" + unit)), "")
+    bare = name.removesuffix("_" + unit)
+    return WORDS.get(bare, bare.replace("_", " ")), UNITS.get(unit, "")
+
+
+def named(name):
+    """A field's words with its unit, such as "range (km)"."""
+    words, unit = label(name)
+    return f"{words} ({unit})" if unit else words
+
+
+def stuck(design, performance):
+    """Why a single design does not drive: "soil", "torque", "traction", or "" where it does."""
+    if performance.buried:
+        return "soil"
+    weak = performance.wheel_torque_nm > design.peak_wheel_torque_nm
+    return ("torque" if weak else "traction") if performance.stalled else ""
+
+
 def binding(design, scenario, performance, *, model=Model()):
-    """What binds a single design on its mission.
+    """What binds a single design on its mission; `performance` is what `evaluate` returned, with its log.
 
     A design that drives, but not to the range limit, is bound by the lever of which 10 % more gains most range: hub
-    speed, array or battery, each with its effect on mass.
-
-    Parameters
-    ----------
-    design, scenario, model
-        Single ones, as given to `evaluate`.
-    performance : Performance
-        What `evaluate` returned for them, with its log.
-
-    Returns
-    -------
-    Binding
-        `key` is one of "soil", "traction", "torque", "duty", "sun", "range limit", "battery", "hub speed"; `sentence`
-        says it with numbers, `detail` compares the levers.
+    speed, array or battery. The key is one of "soil", "traction", "torque", "duty", "sun", "range limit", "battery",
+    "hub speed"; the detail compares the levers.
     """
-    p, base = performance, design.avionics_power_w + scenario.payload_power_w
-    if p.buried:
-        return Binding("soil", "The soil cannot carry the wheels at any sinkage: the rover is buried. Widen or enlarge "
-                               "the wheels, or shed mass.")
-    if p.stalled and p.wheel_torque_nm > design.peak_wheel_torque_nm:
+    p, base, key = performance, design.avionics_power_w + scenario.payload_power_w, stuck(design, performance)
+    if key == "soil":
+        return Binding(key, "The soil cannot carry the wheels at any sinkage: the rover is buried. Widen or enlarge "
+                            "the wheels, or shed mass.")
+    if key == "torque":
         also = " Traction fails as well." if p.slip >= model.slip_max else ""
-        return Binding("torque", f"Torque binds: climbing {scenario.slope_deg:g} deg takes {p.wheel_torque_nm:.2f} N m "
-                                 f"at each wheel, the hub gives {design.peak_wheel_torque_nm:.2f} N m.{also}")
-    if p.stalled:
-        return Binding("traction", f"Traction binds: no slip develops the pull that {scenario.slope_deg:g} deg "
-                                   f"demands; this rover climbs {p.slope_capability_deg:.1f} deg.")
+        return Binding(key, f"Torque binds: climbing {scenario.slope_deg:g} deg takes {p.wheel_torque_nm:.2f} N m "
+                            f"at each wheel, the hub gives {design.peak_wheel_torque_nm:.2f} N m.{also}")
+    if key == "traction":
+        return Binding(key, f"Traction binds: no slip develops the pull that {scenario.slope_deg:g} deg "
+                            f"demands; this rover climbs {p.slope_capability_deg:.1f} deg.")
     if p.average_solar_power_w <= base:
         return Binding("sun", f"Sunlight binds: the array averages {p.average_solar_power_w:.1f} W, avionics and "
                               f"payload draw {base:.1f} W, and nothing is left for driving.")
@@ -71,19 +84,26 @@ def binding(design, scenario, performance, *, model=Model()):
     if p.range_km >= scenario.traverse_limit_km:
         return Binding("range limit", f"The range limit binds: the rover reaches the mission's "
                                       f"{scenario.traverse_limit_km:g} km before the time is up.")
-    gains = _gains(design, scenario, performance, model)
+    gains = _gains(design, scenario, p, model)
     key = max(gains, key=gains.get)
     detail = "10 % more hub speed gives {:.1f} % more range, array {:.1f} %, battery {:.1f} %".format(*gains.values())
     if p.log is not None and p.log.throttled.any():
         detail += f"; in {100 * p.log.throttled.mean():.0f} % of the hours the pack is empty and sunlight alone decides"
-    return Binding(key, {
-        "hub speed": "Hub speed binds: sunlight would pay for " + (
-            f"{p.energy_balance_speed_m_s:.1f} m/s" if p.energy_balance_speed_m_s < 10 else "far more")
-            + f", the hub turns for {100 * p.cruise_speed_m_s:.1f} cm/s at most.",
-        "sun": f"Sunlight binds: what the array yields above avionics and payload pays for "
-               f"{100 * p.cruise_speed_m_s:.1f} cm/s.",
-        "battery": f"The battery binds: it falls to {100 * p.minimum_soc:.0f} %, and driving stops."}[key], detail
-                   + ".")
+    paid = f"{p.energy_balance_speed_m_s:.1f} m/s" if p.energy_balance_speed_m_s < 10 else "far more"
+    speed = f"{100 * p.cruise_speed_m_s:.1f} cm/s"
+    sentences = {"hub speed": f"Hub speed binds: sunlight would pay for {paid}, the hub turns for {speed} at most.",
+                 "sun": f"Sunlight binds: what the array yields above avionics and payload pays for {speed}.",
+                 "battery": f"The battery binds: it falls to {100 * p.minimum_soc:.0f} %, and driving stops."}
+    return Binding(key, sentences[key], detail + ".")
+
+
+def _each_alone(design, scenario, model, values):
+    """Performance, without a range limit, of each change in `values` (field -> value) made alone."""
+    now = {**design.numbers(), **model.numbers()}
+    lanes = {name: np.where(np.arange(len(values)) == i, value, now[name])
+             for i, (name, value) in enumerate(values.items())}
+    *changed, model = replaced(design, dataclasses.replace(scenario, traverse_limit_km=np.inf), model, lanes)
+    return evaluate(*changed, model=model)
 
 
 def _gains(design, scenario, performance, model):
@@ -91,54 +111,9 @@ def _gains(design, scenario, performance, model):
     now = {**design.numbers(), **model.numbers()}
     factors = np.array([1.1 if name not in DESIGN_SPACE or now[name] * 1.1 <= DESIGN_SPACE[name].high else 1 / 1.1
                         for name in LEVERS.values()])
-    lanes = {name: np.where(np.arange(len(LEVERS)) == i, factors[i], 1) * now[name]
-             for i, name in enumerate(LEVERS.values())}
-    *changed, model = replaced(design, dataclasses.replace(scenario, traverse_limit_km=np.inf), model, lanes)
-    ratio = np.maximum(evaluate(*changed, model=model).range_km, 1e-9) / max(performance.range_km, 1e-9)
+    changed = _each_alone(design, scenario, model, {n: f * now[n] for n, f in zip(LEVERS.values(), factors)})
+    ratio = np.maximum(changed.range_km, 1e-9) / max(performance.range_km, 1e-9)
     return dict(zip(LEVERS, np.minimum(100 * (np.where(factors > 1, ratio, 1 / ratio) - 1), 999.0).tolist()))
-
-
-def verdict(design, scenario, performance, *, model=Model()):
-    """Whether a single design does its mission, in one sentence, and whether it does.
-
-    Parameters
-    ----------
-    design, scenario, performance, model
-        As for `binding`; the scenario's constraints count as well.
-
-    Returns
-    -------
-    met : bool
-    sentence : str
-    """
-    p, limit = performance, scenario.traverse_limit_km
-    if p.buried:
-        drive = "Sinks: the soil cannot carry it"
-    elif p.stalled and p.wheel_torque_nm > design.peak_wheel_torque_nm:
-        drive = f"Does not drive: {scenario.slope_deg:g}° is too steep for its hubs"
-    elif p.stalled:
-        drive = f"Does not drive: its wheels slip on {scenario.slope_deg:g}°"
-    elif p.range_km <= 0:
-        drive = "Does not drive: no power or no time for it"
-    elif p.range_km >= limit:
-        days = scenario.duration_earth_days
-        hour = np.inf if p.log is None else p.log.time_h[np.argmax(p.log.distance_km >= limit * (1 - 1e-12))]
-        spare = f" on day {hour / 24:.1f} of {days:g}" if np.isfinite(hour) else ""
-        drive = f"Drives the whole route of {limit:g} km{spare}"
-    else:
-        drive = f"Drives {p.range_km:.3g} km" if np.isinf(limit) else f"Drives {p.range_km:.3g} of {limit:g} km"
-    bad = [words for words, holds in (
-        ("freezes at night", p.cold_temperature_c >= model.operating_temperature_min_c),
-        ("overheats at noon", p.hot_temperature_c <= model.operating_temperature_max_c),
-        ("spends more energy than it gains", p.energy_balance_pct >= 0 or p.range_km <= 0),
-        (f"cannot climb a step of {1000 * scenario.required_obstacle_height_m:.0f} mm",
-         p.obstacle_capability_m >= scenario.required_obstacle_height_m)) if not holds]
-    missed = [words for metric, sign, least in scenario.problem.constraints for words, value in
-              [(f"misses {label(metric)[0]} {sign} {least:g} {label(metric)[1]}".rstrip(), float(getattr(p, metric)))]
-              if not (value >= least if sign == ">=" else value <= least) and not (metric == "range_km" and value <= 0)]
-    words = [drive, *bad, *missed]
-    sentence = ", ".join(words[:-1]) + ", and " * (len(words) > 1) + words[-1] + "."
-    return bool(p.range_km > 0 and not bad and not missed), sentence
 
 
 def levers(design, scenario, performance, key, *, model=Model()):
@@ -149,86 +124,95 @@ def levers(design, scenario, performance, key, *, model=Model()):
     """
     if key in ("duty", "range limit"):
         return []
-    names, metric, unit = {
-        "traction": (("wheel_radius_m", "wheel_width_m", "grouser_height_m"), "slope_capability_deg", "°"),
-        "soil": (("wheel_radius_m", "wheel_width_m"), "slope_capability_deg", "°"),
-        "torque": (("peak_wheel_torque_nm", "wheel_radius_m"), "wheel_torque_nm", "N m")}.get(
-            key, ((*LEVERS.values(), "wheel_radius_m"), "range_km", "km"))
+    names, metric = {
+        "traction": (("wheel_radius_m", "wheel_width_m", "grouser_height_m"), "slope_capability_deg"),
+        "soil": (("wheel_radius_m", "wheel_width_m"), "slope_capability_deg"),
+        "torque": (("peak_wheel_torque_nm", "wheel_radius_m"), "wheel_torque_nm")}.get(
+            key, ((*LEVERS.values(), "wheel_radius_m"), "range_km"))
     if key == "sun" and performance.range_km <= 0:
-        names, metric, unit = ("solar_area_m2",), "average_solar_power_w", "W"
+        names, metric = ("solar_area_m2",), "average_solar_power_w"
     now = {**design.numbers(), **model.numbers()}
-    spans = [DESIGN_SPACE[name].high if name in DESIGN_SPACE else np.inf for name in names]
-    more = [min(1.1 * now[name], high) for name, high in zip(names, spans)]
-    lanes = {name: np.where(np.arange(len(names)) == i, more[i], now[name]) for i, name in enumerate(names)}
-    free = dataclasses.replace(scenario, traverse_limit_km=np.inf)
-    *changed, model = replaced(design, free, model, lanes)
-    found = getattr(evaluate(*changed, model=model), metric) - getattr(performance, metric)
+    more = {name: min(1.1 * now[name], DESIGN_SPACE[name].high if name in DESIGN_SPACE else np.inf) for name in names}
+    gains = getattr(_each_alone(design, scenario, model, more), metric) - getattr(performance, metric)
     if key == "torque":                                  # to spare: what the hub gives less what the wheel takes
-        found = np.array([m - now[n] if n == "peak_wheel_torque_nm" else 0.0 for n, m in zip(names, more)]) - found
-    words = {**{f: w for w, f in LEVERS.items()}, "solar_area_m2": "array", "wheel_radius_m": "wheel radius",
-             "wheel_width_m": "wheel width", "grouser_height_m": "grouser height", "peak_wheel_torque_nm": "hub torque"}
-    rows = [(name, words[name], float(np.nan_to_num(gain)), unit) for name, gain, m in zip(names, found, more)
-            if m > now[name]]
+        gains = np.array([more[n] - now[n] if n == "peak_wheel_torque_nm" else 0.0 for n in names]) - gains
+    words = {field: word for word, field in LEVERS.items()} | {"solar_area_m2": "array",
+                                                               "peak_wheel_torque_nm": "hub torque"}
+    rows = [(name, words.get(name, label(name)[0]), float(np.nan_to_num(gain)), label(metric)[1])
+            for name, gain in zip(names, gains) if more[name] > now[name]]
     return sorted(rows, key=lambda lever: -lever[2])
 
 
+def verdict(design, scenario, performance, *, model=Model()):
+    """Whether a single design does its mission, the demands of its problem included, and that in one sentence."""
+    p, limit = performance, scenario.traverse_limit_km
+    slope = f"{scenario.slope_deg:g}°"
+    drive = {"soil": "Sinks: the soil cannot carry it", "torque": f"Does not drive: {slope} is too steep for its hubs",
+             "traction": f"Does not drive: its wheels slip on {slope}", "": ""}[stuck(design, p)]
+    if not drive and p.range_km <= 0:
+        drive = "Does not drive: no power or no time for it"
+    elif not drive and p.range_km >= limit:
+        hour = np.inf if p.log is None else p.log.time_h[np.argmax(p.log.distance_km >= limit * (1 - 1e-12))]
+        spare = f" on day {hour / 24:.1f} of {scenario.duration_earth_days:g}" if np.isfinite(hour) else ""
+        drive = f"Drives the whole route of {limit:g} km{spare}"
+    elif not drive:
+        drive = f"Drives {p.range_km:.3g} km" if np.isinf(limit) else f"Drives {p.range_km:.3g} of {limit:g} km"
+    bad = [words for words, good in (
+        ("freezes at night", p.cold_survival), ("overheats at noon", p.hot_survival),
+        ("spends more energy than it gains", p.energy_balance_pct >= 0 or p.range_km <= 0),
+        (f"cannot climb a step of {1000 * scenario.required_obstacle_height_m:.0f} mm",
+         p.obstacle_capability_m >= scenario.required_obstacle_height_m)) if not good]
+    bad += [f"misses {label(metric)[0]} {sign} {least:g} {label(metric)[1]}".rstrip()
+            for metric, sign, least in scenario.problem.constraints
+            if not holds(p, (metric, sign, least)) and not (metric == "range_km" and p.range_km <= 0)]
+    words = [drive, *bad]
+    return bool(p.range_km > 0 and not bad), ", ".join(words[:-1]) + ", and " * bool(bad) + words[-1] + "."
+
+
 def limits(design, scenario, performance, *, model=Model()):
-    """The mission's requirements, each met or missed by what the design does.
-
-    Parameters
-    ----------
-    design, scenario, performance, model
-        As for `binding`.
-
-    Returns
-    -------
-    list of Limit
-        Range, slope, torque, energy balance, obstacle, stall, and the temperatures at noon and in the night.
-    """
+    """The mission's requirements as Limits: range, slope, torque, energy balance, obstacle, stall, temperatures."""
     p, s = performance, scenario
     slope = f"{s.slope_deg:g} deg at slip {model.slope_capability_slip:g}"
     if p.slope_capability_deg < s.slope_deg and not p.stalled:       # some wheels pull more at a higher slip
         slope += f" (climbed at slip {p.slip:.2f})"
-    return [
-        Limit("range_km", bool(p.range_km > 0), f"above 0, limit {s.traverse_limit_km:g} km"),
-        Limit("slope_capability_deg", bool(p.slope_capability_deg >= s.slope_deg), slope),
-        Limit("wheel_torque_nm", bool(p.wheel_torque_nm <= design.peak_wheel_torque_nm),
-              f"at most {design.peak_wheel_torque_nm:.3g} N m"),
-        Limit("energy_balance_pct", bool(p.energy_balance_pct >= 0), "0 % or more"),
-        Limit("obstacle_capability_m", bool(p.obstacle_capability_m >= s.required_obstacle_height_m),
-              f"{s.required_obstacle_height_m:g} m"),
-        Limit("stalled", not p.stalled and not p.buried, "must drive the slope"),
-        Limit("thermal_survival", bool(p.thermal_survival),
-              f"{p.cold_temperature_c:.0f} to {p.hot_temperature_c:.0f} °C, allowed "
-              f"{model.operating_temperature_min_c:g} "
-              f"to {model.operating_temperature_max_c:g}")]
+    rows = (("range_km", p.range_km > 0, f"above 0, limit {s.traverse_limit_km:g} km"),
+            ("slope_capability_deg", p.slope_capability_deg >= s.slope_deg, slope),
+            ("wheel_torque_nm", p.wheel_torque_nm <= design.peak_wheel_torque_nm,
+             f"at most {design.peak_wheel_torque_nm:.3g} N m"),
+            ("energy_balance_pct", p.energy_balance_pct >= 0, "0 % or more"),
+            ("obstacle_capability_m", p.obstacle_capability_m >= s.required_obstacle_height_m,
+             f"{s.required_obstacle_height_m:g} m"),
+            ("stalled", not p.stalled and not p.buried, "must drive the slope"),
+            ("thermal_survival", p.thermal_survival, f"{p.cold_temperature_c:.0f} to {p.hot_temperature_c:.0f} °C, "
+             f"allowed {model.operating_temperature_min_c:g} to {model.operating_temperature_max_c:g}"))
+    return [Limit(metric, bool(met), words) for metric, met, words in rows]
+
+
+def failing(design, performance, scenario):
+    """Parts that fail, each with a few words: "wheels", "hubs", "array", "body", "obstacle"."""
+    p = performance
+    bad = {"soil": {"wheels": "wheels buried"}, "torque": {"hubs": "hubs too weak"},
+           "traction": {"wheels": "wheels slip"}, "": {}}[stuck(design, p)]
+    if p.average_solar_power_w <= design.avionics_power_w + scenario.payload_power_w:
+        bad["array"] = "array too small"
+    if not p.thermal_survival:
+        bad["body"] = "too hot at noon" if p.cold_survival else "too cold at night"
+    if p.obstacle_capability_m < scenario.required_obstacle_height_m:
+        bad["obstacle"] = "obstacle too high"
+    return bad
 
 
 def as_python(design, scenario, model, *calls, baseline=None):
-    """Python that rebuilds a design, a mission and a model, and makes calls with them.
+    """Python that rebuilds a single design, mission and model, and runs as it stands.
 
-    Parameters
-    ----------
-    design : Design
-    scenario : Scenario
-    model : Model
-        Single ones.
-    calls : str
-        Lines that use `design`, `mission` and `model`.
-    baseline : Design, optional
-        A second design, for the calls to use as `baseline`.
-
-    Returns
-    -------
-    str
-        Source text that runs as it stands.
+    `calls` are lines that use `design`, `mission`, `model` and, where a second design is given, `baseline`.
     """
-    require(design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
+    rovers = {"design": design} | ({} if baseline is None else {"baseline": baseline})
+    single(**rovers, scenario=scenario, model=model)
     changed = {f.name: getattr(model, f.name) for f in dataclasses.fields(Model) if getattr(model, f.name) != f.default}
     mission = {f.name: getattr(scenario, f.name) for f in dataclasses.fields(Scenario)
                if f.name not in ("soil", "problem") and getattr(scenario, f.name) != f.default}
     soil = {f.name: getattr(scenario.soil, f.name) for f in dataclasses.fields(Soil)}
-    rovers = {"design": design} | ({} if baseline is None else {"baseline": baseline})
     parts = [_built(name, "Design", {n: getattr(rover, n) for n in DESIGN_SPACE}) for name, rover in rovers.items()]
     parts += [_built("soil", "Soil", soil), _built("mission", "Scenario", mission, "    soil=soil,"),
               _built("model", "Model", changed)]

@@ -8,36 +8,20 @@ from __future__ import annotations
 import html
 import math
 import re
+import textwrap
 
 import numpy as np
 
-from .rover_picture import contact, svg, wheel_picture
+from .design import DESIGN_SPACE
+from .explain import label, named
+from .rover_picture import contact, element, svg, text, wheel_picture
 
 SIZE = 600, 380
-LABELS = {"range_km": ("range", "km"), "total_mass_kg": ("mass", "kg"),
-          "slope_capability_deg": ("slope capability", "°"),
-          "energy_balance_pct": ("energy balance", "%"), "cruise_speed_m_s": ("cruise speed", "m/s"),
-          "slip": ("slip", ""),
-          "sinkage_m": ("sinkage", "m"), "wheel_torque_nm": ("wheel torque", "N m"),
-          "final_soc": ("charge at the end", ""),
-          "minimum_soc": ("lowest charge", ""), "average_solar_power_w": ("mean sunlight", "W"),
-          "hot_temperature_c": ("noon temperature", "°C"), "cold_temperature_c": ("night temperature", "°C"),
-          "obstacle_capability_m": ("obstacle capability", "m"), "thermal_survival": ("survival of heat and cold", ""),
-          "energy_balance_speed_m_s": ("energy-balance speed", "m/s"), "feasible": ("drives the mission", "")}
-"""Words and unit of the metrics."""
-SHADES = np.array([(0, 32, 77), (49, 68, 107), (102, 105, 112), (149, 143, 120), (202, 185, 105), (255, 233, 69)],
-                  float)
-
-
-def label(name):
-    """Words and unit of a metric, such as ("range", "km")."""
-    return LABELS.get(name, (name.replace("_", " "), ""))
-
-
-def named(name):
-    """A metric's words with its unit, such as "range (km)"."""
-    words, unit = label(name)
-    return f"{words} ({unit})" if unit else words
+LETTER = 6.3                                             # pixels of a letter of small words
+SHADES = (0, 32, 77), (49, 68, 107), (102, 105, 112), (149, 143, 120), (202, 185, 105), (255, 233, 69)
+HATCH = ('<pattern id="rdk-hatch" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
+         '<path d="M0 0V7" stroke="#999" stroke-width="1.8"/></pattern>')
+HATCHED = {"style": "fill:url(#rdk-hatch)"}
 
 
 def alt(picture):
@@ -45,16 +29,11 @@ def alt(picture):
     return html.unescape(re.search(r'aria-label="([^"]*)"', picture)[1])
 
 
-def text(x, y, words, cls=""):
-    """A text element."""
-    return f'<text x="{x:.1f}" y="{y:.1f}" class="{cls}">{html.escape(str(words), quote=False)}</text>'
-
-
 def shade(share):
     """A colour from dark blue to yellow for a share from 0 to 1; it also reads in grey."""
-    place = float(np.clip(np.nan_to_num(share), 0, 1)) * (len(SHADES) - 1)
-    i = min(int(place), len(SHADES) - 2)
-    return "#" + bytes((SHADES[i] + (place - i) * (SHADES[i + 1] - SHADES[i])).round().astype("u1")).hex()
+    place = 5 * min(max(share, 0.0), 1.0) if share == share else 0.0
+    i = min(int(place), 4)
+    return "#" + bytes(round(a + (place - i) * (b - a)) for a, b in zip(SHADES[i], SHADES[i + 1])).hex()
 
 
 def span(*values, zero=False, room=0.06):
@@ -80,179 +59,229 @@ def ticks(low, high, count=5, log=False):
     return [k * step for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
 
 
+def path(xs, ys, close=""):
+    """The data of a path through pixels."""
+    return "M" + "L".join(map("{:.1f} {:.1f}".format, xs.tolist(), ys.tolist())) + close
+
+
+def seen(ys):
+    """Which points of a line can be seen: every so many, and those where it bends."""
+    kept = np.arange(len(ys)) % max(len(ys) // 200, 1) == 0
+    bend = np.abs(np.diff(ys, 2, prepend=ys[:1], append=ys[-1:])) > 0.4
+    kept |= bend | np.roll(bend, 1) | np.roll(bend, -1)
+    kept[[0, -1]] = True
+    return kept
+
+
+def sign(kind, cls, x, y, size=5, **more):
+    """A "dot", "square" or "cross" around a pixel."""
+    if kind == "dot":
+        return element("circle", cls, cx=x, cy=y, r=size, **more)
+    if kind == "square":
+        return element("rect", cls, x=x - size, y=y - size, width=2 * size, height=2 * size, **more)
+    return element("path", cls, d=f"M{x - size:.1f} {y - size:.1f}l{2 * size} {2 * size}m0 {-2 * size}l{-2 * size} "
+                                  f"{2 * size}", **more)
+
+
 class Axes:
-    """A panel of a picture: data to pixels, and the parts drawn so far."""
+    """A panel of a picture: data to pixels, the parts drawn so far, and the places taken by marks and names."""
 
     def __init__(self, box, xs, ys, log=False):
-        self.box, self.xs, self.ys, self.log, self.parts = box, xs, ys, log, []
+        self.box, self.xs, self.ys, self.log, self.parts, self.taken = box, xs, ys, log, [], []
+        low, high = map(math.log, xs) if log else xs
+        self.per_x, self.per_y = (box[2] - box[0]) / (high - low), (box[3] - box[1]) / (ys[1] - ys[0])
+        self.left = box[0] - self.per_x * low
 
     def x(self, value):
         """Pixels from the left."""
-        x0, _, x1, _ = self.box
-        low, high = np.log(self.xs) if self.log else self.xs
-        return x0 + (x1 - x0) * ((np.log(value) if self.log else np.asarray(value, float)) - low) / (high - low)
+        return self.left + self.per_x * (np.log(value) if self.log else value)
 
     def y(self, value):
         """Pixels from the top."""
-        _, y0, _, y1 = self.box
-        return y1 - (y1 - y0) * (np.asarray(value, float) - self.ys[0]) / (self.ys[1] - self.ys[0])
+        return self.box[3] - self.per_y * (value - self.ys[0])
 
-    def frame(self, title="", unit="", below="", right=True, count=4):
+    def add(self, *arguments, **attributes):
+        """Append an element."""
+        self.parts.append(element(*arguments, **attributes))
+
+    def say(self, x, y, words, cls=""):
+        """Append words at a pixel."""
+        self.parts.append(text(x, y, words, cls))
+
+    def frame(self, title="", unit="", below="", count=4):
         """Grid, ticks, the name of the upright axis above, that of the other below."""
         x0, y0, x1, y1 = self.box
-        for t in ticks(*self.ys, count):
-            self.parts.append(f'<path class="g" d="M{x0} {self.y(t):.1f}H{x1}"/>'
-                              + text(x0 - 6, self.y(t) + 4, f"{t:.5g}", "q s e"))
-        for t in ticks(*self.xs, max(int((x1 - x0) / 90), 2), self.log):
-            self.parts.append(f'<path class="g" d="M{self.x(t):.1f} {y0}V{y1}"/>'
-                              + (text(self.x(t), y1 + 14, f"{t:.5g}", "q s m") if below else ""))
-        self.parts.append(f'<text x="{x0}" y="{y0 - 7}" class="b">{html.escape(title)} <tspan class="q '
-                          f's">{unit}</tspan></text>')
-        if below:
-            self.parts.append(text((x0 + x1) / 2, y1 + 30, below, "q m"))
-        return self
+        for t in ticks(*self.ys, count) if count else ():
+            self.add("path", "g", d=f"M{x0:.1f} {self.y(t):.1f}H{x1:.1f}")
+            self.say(x0 - 6, self.y(t) + 4, f"{t:.5g}", "q s e")
+        for t in ticks(*self.xs, max(int((x1 - x0) / 90), 4), self.log):
+            self.add("path", "g", d=f"M{self.x(t):.1f} {y0:.1f}V{y1:.1f}")
+            self.say(self.x(t), y1 + 14, f"{t:.5g}" if below else "", "q s m")
+        self.add("text", "b", f'{html.escape(title.capitalize())} <tspan class="q s">{unit}</tspan>', x=x0, y=y0 - 7)
+        self.say((x0 + x1) / 2, y1 + 30, below, "q m")
 
-    def line(self, xs, ys, cls="c0", style=""):
-        """A line through points; it breaks where there is none, and keeps only points that can be seen."""
+    def line(self, xs, ys, cls="c0", **more):
+        """A line through points that breaks where there is none."""
         px, py = np.broadcast_arrays(self.x(xs), self.y(ys))
-        stride = max(len(px) // 200, 1)
-        kept = np.arange(len(px)) % stride == 0
-        jump = np.abs(np.diff(py, 2, prepend=py[:1], append=py[-1:])) > 0.4
-        kept |= jump | np.roll(jump, 1) | np.roll(jump, -1)
-        kept[[0, -1]] = True
-        words, pen = [], "M"
-        for a, b in zip(px[kept].tolist(), py[kept].tolist()):
-            words.append(f"{pen}{a:.1f} {b:.1f}" if math.isfinite(b) else "")
-            pen = "L" if math.isfinite(b) else "M"
-        self.parts.append(f'<path class="l {cls}" style="{style}" d="{"".join(words)}"/>')
+        px, py = px[seen(py)], py[seen(py)]
+        turns = np.flatnonzero(np.diff(np.isfinite(py))) + 1
+        runs = [path(*run) for run in zip(np.split(px, turns), np.split(py, turns)) if np.isfinite(run[1][0])]
+        self.add("path", "l " + cls, d="".join(runs), **more)
 
     def area(self, xs, low, high, cls="f0", opacity=0.18):
         """A band between two lines."""
-        a, b = self.x(xs), self.y(low)
-        points = [*zip(a, self.y(high)), *zip(a[::-1], b[::-1])]
-        self.parts.append(f'<path class="{cls}" opacity="{opacity}" d="M'
-                          + "L".join(f"{u:.1f} {v:.1f}" for u, v in points) + 'Z"/>')
+        px, low, high = np.broadcast_arrays(self.x(xs), self.y(low), self.y(high))
+        px, low, high = (values[seen(high) | seen(low)] for values in (px, low, high))
+        self.add("path", cls, d=path(np.append(px, px[::-1]), np.append(high, low[::-1]), "Z"), opacity=opacity)
 
-    def dot(self, x, y, cls="f0", size=5, more="", inside=""):
-        """A dot."""
-        self.parts.append(f'<circle class="{cls}" cx="{float(self.x(x)):.1f}" cy="{float(self.y(y)):.1f}" r="{size}" '
-                          f'{more}>'
-                          f"{inside}</circle>")
+    def stretches(self, edges, flags, **look):
+        """Shade the stretches where flags hold, flags[i] from edges[i] to edges[i + 1]."""
+        turns = np.flatnonzero(np.diff(np.concatenate([[0], flags, [0]])))
+        for a, b in self.x(edges)[turns].reshape(-1, 2).tolist():
+            self.add("rect", "f3", x=a, y=self.box[1], width=b - a, height=self.box[3] - self.box[1], **look)
 
-    def names(self, xs, ys, words, cls="s"):
-        """Names beside points, moved down until none covers another."""
-        taken = []
-        for x, y, name in sorted(zip(self.x(xs).tolist(), self.y(ys).tolist(), words)):
-            end = x > self.box[0] + 0.7 * (self.box[2] - self.box[0])
-            at, wide = y + 4, 6.4 * len(name) + 8
-            left = x - wide - 8 if end else x + 8
-            while any(left < b and left + wide > a and abs(at - t) < 12 for a, b, t in taken):
-                at += 12
-            taken.append((left, left + wide, at))
-            self.parts.append(text(x - 8 if end else x + 8, at, name, cls + " e" * end))
+    def mark(self, x, y, kind="dot", cls="f0", size=5, **more):
+        """A mark at a point; no name is set upon it."""
+        x, y = float(self.x(x)), float(self.y(y))
+        self.taken.append((x - size, y - size, x + size, y + size))
+        self.parts.append(sign(kind, cls, x, y, size, **more))
+
+    def name(self, x, y, words, cls="s", sides=(1, -1)):
+        """Words beside a point, on one of the sides, where they cover no mark and no other words."""
+        x, y, wide = float(self.x(x)), float(self.y(y)), LETTER * len(words) + 2
+        spots = [(x + 9 if side > 0 else x - 9 - wide, y + 4 + 6 * step) for step in (0, 2, -2, 3, -3, 4, -4, 6, -6, 8)
+                 for side in sides]
+        boxes = [(left, low - 10, left + wide, low + 2) for left, low in spots]
+        free = next((box for box in boxes if box[0] >= self.box[0] and box[2] <= self.box[2] + 62 and not any(
+            box[0] < c and box[2] > a and box[1] < d and box[3] > b for a, b, c, d in self.taken)), boxes[0])
+        self.taken.append(free)
+        self.say(free[0], free[3] - 2, words, cls + " h")
+
+    def legend(self, *entries):
+        """What the marks mean, above on the right: (words, kind, class, and more of `sign`)."""
+        x = self.box[2]
+        for words, kind, cls, *more in reversed(entries):
+            x -= LETTER * len(words)
+            self.parts += text(x, 14, words, "s"), sign(kind, cls, x - 10, 10, **dict(*more))
+            x -= 28
+
+    def scale(self, low, high, words):
+        """What the shades mean, on the right."""
+        x, y1, tall = self.box[2] + 12, self.box[3], (self.box[3] - self.box[1] - 8) / 10
+        for k in range(10):
+            self.add("rect", "", fill=shade((k + 0.5) / 10), x=x, y=y1 - (k + 1) * tall, width=14, height=tall + 0.5)
+        for k in range(0, 11, 2):
+            self.say(x + 18, y1 - k * tall + 4, f"{low + k * (high - low) / 10:.3g}", "q s")
+        self.say(x + 70, self.box[1] - 4, words, "s e")
 
     def __str__(self):
         return "".join(self.parts)
 
 
+def bars(size, top, rows, below, zero=False, joined=False):
+    """Axes with bars, filled where they rise and open where they fall, `joined` ones continuing each other.
+
+    A row is (name, start, end, words, marks); marks are (letter, class, value), one below the other.
+    """
+    width, height = size
+    left, tall = 72 + LETTER * max(len(row[0]) for row in rows), (height - 44 - top) / max(len(rows), 4)
+    reach = [value for _, *ends, _, marks in rows for value in (*ends, *(value for *_, value in marks))]
+    axes = Axes((left, top, width - 20, height - 44), span(reach, zero=zero), (0, 1))
+    axes.frame(below=below, count=0)
+    for k, (name, *ends, words, marks) in enumerate(rows):
+        y, (a, b) = top + k * tall, map(axes.x, ends)
+        axes.add("rect", "bar f0" if b >= a else "bar l c1", x=min(a, b), y=y + 0.16 * tall, width=max(abs(b - a), 1.0),
+                 height=0.68 * tall)
+        for i, (letter, cls, value) in enumerate(marks):
+            x, high = float(axes.x(value)), tall / len(marks)
+            axes.add("path", "l " + cls, d=f"M{x:.1f} {y + i * high:.1f}v{high:.1f}")
+            axes.say(x + 3, y + (i + 0.5) * high + 4, letter, "s h f" + cls[1])
+        if joined and k + 1 < len(rows):
+            axes.add("path", "a", d=f"M{b:.1f} {y + 0.84 * tall:.1f}v{0.32 * tall:.1f}")
+        axes.say(left - 60, y + tall / 2 + 4, name, "s e")
+        axes.say(left - 6, y + tall / 2 + 4, words, "s e")
+    return axes
+
+
+def message(size, words):
+    """A picture of words alone."""
+    width, height = size
+    lines = textwrap.wrap(words, max(int(width / 7.5), 20))
+    return svg(width, height, "".join(text(width / 2, height / 2 + 16 * k - 8 * len(lines), line, "m")
+                                      for k, line in enumerate(lines)), words)
+
+
 def log(result, scenario, soc_initial=1.0, size=SIZE, ghosts=()):
     """Sunlight and load, charge, and distance, hour by hour; `ghosts` are (name, class, log) of other designs."""
     width, height = size
-    log, start = result.log, lambda values, first: np.insert(values, 0, first)
-    days = start(log.time_h / 24, 0.0)
-    third, far, limit = (height - 34) / 3, float(log.distance_km[-1]), scenario.traverse_limit_km
-    boxes = [(44, 24 + k * third, width - 62, 24 + (k + 1) * third - 26) for k in range(3)]
-    ends = [far, *(float(other.distance_km[-1]) for *_, other in ghosts)]
-    top = max(*ends, limit if limit <= 4 * max(*ends, 0.01) else 0, 0.05)
-    power = Axes(boxes[0], (0, days[-1]), span(log.solar_w, log.load_w, zero=True))
-    charge, distance = Axes(boxes[1], (0, days[-1]), (0, 105)), Axes(boxes[2], (0, days[-1]), (0, 1.08 * top))
-    dark = np.flatnonzero(np.diff(np.concatenate([[0], log.sun_elevation_deg <= 0, [0]])))
-    for axes in (power, charge, distance):
-        for a, b in zip(days[dark[::2]], days[dark[1::2]]):
-            x0, x1 = float(axes.x(a)), float(axes.x(b))
-            axes.parts.append(f'<rect class="f3" opacity=".09" x="{x0:.1f}" y="{axes.box[1]:.1f}" '
-                              f'width="{x1 - x0:.1f}" '
-                              f'height="{axes.box[3] - axes.box[1]:.1f}"/>')
-            if axes is power and x1 - x0 > 40:
-                axes.parts.append(text((x0 + x1) / 2, axes.box[1] + 12, "night", "q s m"))
+    log, limit, third = result.log, scenario.traverse_limit_km, (height - 34) / 3
+    days, far = np.insert(log.time_h / 24, 0, 0.0), float(log.distance_km[-1])
+    ends = max(far, 0.01, *(float(other.distance_km[-1]) for *_, other in ghosts))
+    top = 1.08 * max(ends, limit if limit <= 4 * ends else 0, 0.05)
+    power, charge, distance = panels = [
+        Axes((44, 24 + k * third, width - 62, third * (k + 1) - 2), (0, days[-1]), ys)
+        for k, ys in enumerate((span(log.solar_w, log.load_w, zero=True), (0, 105), (0, top)))]
+    dark, word = log.lit_fraction < 0.5, "night" if scenario.skyline is None else "sun hidden"
+    shaded = f"shaded: {word}" * bool(dark.any())
+    power.say(width - 62, 17, shaded, "q s e")
+    for axes in panels:
+        axes.stretches(days, dark, opacity=0.1)
     power.frame("Power", "W", count=3)
-    power.area(days, 0 * days, start(log.solar_w, log.solar_w[0]), "f1", 0.14)
-    power.line(days, start(log.solar_w, log.solar_w[0]), "c1")
-    power.line(days, start(log.load_w, log.load_w[0]), "c3")
-    peak = int(log.solar_w.argmax())
-    power.parts.append(text(min(max(power.x(days[peak]), 130), width - 110), power.y(log.solar_w[peak]) - 5, "sunlight",
-                            "s m f1 b"))
-    power.parts.append(text(width - 57, power.y(log.load_w[-1]) + 4, "load", "s b"))
     charge.frame("Charge", "%", count=2)
-    for name, cls, other in ghosts:
-        charge.line(start(other.time_h / 24, 0), 100 * start(other.soc, soc_initial), cls,
-                    "stroke-width:1.2;stroke-dasharray:3 3")
-        distance.line(start(other.time_h / 24, 0), start(other.distance_km, 0), cls,
-                      "stroke-width:1.2;stroke-dasharray:3 3")
-        distance.parts.append(text(width - 57, distance.y(other.distance_km[-1]) + 4, name, "s b f" + cls[1]))
-    charge.line(days, 100 * start(log.soc, soc_initial), "c0")
     distance.frame("Distance", "km", f"Earth days after {scenario.start_utc or 'sunrise'}", count=3)
-    if limit <= 1.08 * top:
-        distance.parts.append(f'<path class="a" stroke-dasharray="6 4" d="M44 {distance.y(limit):.1f}H{width - 62}"/>'
-                              + text(48, distance.y(limit) + 12, "end of the route", "q s"))
-    distance.line(days, start(log.distance_km, 0), "c2")
-    distance.dot(days[-1], far, "f2", 4)
-    distance.parts.append(text(width - 55, distance.y(far) - 7, f"{far:.3g} km", "b"))
-    return svg(width, height, f"{power}{charge}{distance}",
-               f"Three charts over {days[-1]:.0f} Earth days. Sunlight reaches {log.solar_w.max():.0f} W against a "
-               "load of up "
-               f"to {log.load_w.max():.0f} W. Charge falls to {100 * result.minimum_soc:.0f} % and ends at "
-               f"{100 * result.final_soc:.0f} %. Distance reaches {result.range_km:.2f} km.")
+    solar, load = (np.insert(values, 0, values[0]) for values in (log.solar_w, log.load_w))
+    power.area(days, 0, solar, "f1", 0.14)
+    power.line(days, solar, "c1")
+    power.line(days, load, "c3")
+    x, peak = power.x(days[solar.argmax()]), solar.max()
+    power.say(min(max(x, 130), width - 92 - LETTER * len(shaded)), power.y(peak) - 5, "sunlight", "s m f1 b h")
+    power.name(days[-1], load[-1], "load", "s b", (1,))
+    if limit <= top:
+        distance.add("path", "a", d=f"M44 {distance.y(limit):.1f}H{width - 62}", stroke_dasharray="6 4")
+        distance.say(48, distance.y(limit) + 12, "end of the route", "q s h")
+    distance.mark(days[-1], far, cls="f2", size=4)
+    distance.name(days[-1], far, f"{far:.3g} km", "b f2", (1,))
+    for name, cls, other in (*ghosts, ("", "", log)):    # the design itself last, upon the others
+        hours, look = np.insert(other.time_h / 24, 0, 0.0), {"stroke_dasharray": "3 3"} if cls else {}
+        charge.line(hours, 100 * np.insert(other.soc, 0, soc_initial), f"t {cls}" if cls else "c0", **look)
+        distance.line(hours, np.insert(other.distance_km, 0, 0), f"t {cls}" if cls else "c2", **look)
+        distance.name(days[-1], other.distance_km[-1], name, f"s b f{cls[1:]}", (1,))
+    hidden = f" {word.capitalize()} in {100 * dark.mean():.0f} % of the time, shaded." if shaded else ""
+    return svg(width, height, "".join(map(str, panels)), f"Three charts over {days[-1]:.0f} Earth days. Sunlight "
+               f"reaches {peak:.0f} W against a load of up to {load.max():.0f} W.{hidden} Charge falls to "
+               f"{100 * result.minimum_soc:.0f} % and ends at {100 * result.final_soc:.0f} %. Distance reaches "
+               f"{result.range_km:.2f} km.")
 
 
 def mass(result, size=SIZE, spans=None, ghosts=()):
     """Mass line items as bars, with the 90 % interval of the total; `ghosts` are (name, class, result)."""
-    width, height = size
-    words = {"growth_kg": "margin"}
-    items = {name: float(value) for name, value in result.mass.items.items() if value > 0.0005}
-    items = dict(sorted(items.items(), key=lambda item: -item[1]))
-    others = [getattr(other.mass, name) for name in items for *_, other in ghosts]
-    axes = Axes((100, 24, width - 56, height - 34), span([*items.values(), *others], zero=True),
-                (0, 1)).frame(below="mass (kg)")
-    axes.parts = [part for part in axes.parts if " e\"" not in part
-                  and "H" not in part]         # rows have names instead
-    row = (axes.box[3] - axes.box[1]) / len(items)
-    for k, (name, value) in enumerate(items.items()):
-        y, end = axes.box[1] + (k + 0.5) * row, float(axes.x(value))
-        axes.parts.append(f'<rect class="f0" opacity=".8" x="100" y="{y - 0.34 * row:.1f}" '
-                          f'width="{max(end - 100, 1):.1f}" '
-                          f'height="{0.68 * row:.1f}"/>' + text(end + 6, y + 4, f"{value:.2f}", "s")
-                          + text(93, y + 4, words.get(name, name[:-3].replace("_", " ")), "s e"))
-        for _, cls, other in ghosts:
-            axes.parts.append(f'<path class="l {cls}" d="M{axes.x(getattr(other.mass, name)):.1f} '
-                              f'{y - 0.42 * row:.1f}v{0.84 * row:.1f}"/>')
-    sure = "" if spans is None else f", 90 % of draws {spans[0]:.1f} to {spans[1]:.1f}"
-    axes.parts.append(text(8, 14, f"{result.total_mass_kg:.2f} kg in all{sure}", "b"))
-    heaviest = next(iter(items))
-    return svg(width, height, str(axes), f"Bars of mass line items: {result.total_mass_kg:.2f} kg in all{sure}; the "
-               "largest is "
-               f"{heaviest[:-3].replace('_', ' ')} with {items[heaviest]:.2f} kg.")
+    items = sorted(((value, name) for name, value in result.mass.items.items() if value > 0.0005), reverse=True)
+    rows = [(label(name)[0], 0.0, value, f"{value:.2f}", [(letter, cls, getattr(other.mass, name))
+                                                          for letter, cls, other in ghosts]) for value, name in items]
+    axes = bars(size, 24, rows, "mass (kg)", zero=True)
+    said = f"{result.total_mass_kg:.2f} kg in all"
+    said += "" if spans is None else f", 90 % of draws {spans[0]:.1f} to {spans[1]:.1f}"
+    axes.say(8, 14, said, "b")
+    return svg(*size, str(axes), f"Bars of mass line items: {said}; the largest is {rows[0][0]} with {rows[0][3]} kg.")
 
 
 def wheel(result, design, scenario, model, size=SIZE):
     """The wheel in its soil, and its stresses along the contact at the slip balance."""
     width, height = size
-    narrow = width < 460                                 # then one above the other
-    part = width if narrow else round(0.45 * width)
-    drawn = wheel_picture(design, result, scenario, model=model, width=part, height=round(0.52 * height) if narrow
-                          else height - 20)
+    narrow, half = width < 460, round(0.52 * height)      # then one above the other
+    part, tall = (width, half) if narrow else (round(0.45 * width), height - 20)
+    drawn = wheel_picture(design, result, scenario, model=model, width=part, height=tall)
     if result.buried:
         return svg(width, height, drawn, alt(drawn))
     _, angle, normal, shear = contact(design, result, scenario, model, 61)
-    axes = Axes((44, round(0.52 * height) + 26, width - 14, height - 44) if narrow
-                else (part + 44, 24, width - 14, height - 44),
-                (0, float(np.degrees(angle[-1])) * 1.02), span(normal, shear, zero=True))
+    angle = np.degrees(angle)
+    axes = Axes((44, half + 26, width - 14, height - 44) if narrow else (part + 44, 24, width - 14, height - 44),
+                (0, 1.02 * angle[-1]), span(normal, shear, zero=True, room=0.12))
     axes.frame("Stress", "kPa", "angle ahead of the lowest point (°)")
-    for values, cls, name, dash in ((normal, "c0", "normal", ""), (shear, "c1", "shear", "stroke-dasharray:7 3")):
-        axes.line(np.degrees(angle), values, cls, dash)
+    for values, cls, name, dashes in ((normal, "0", "normal", "none"), (shear, "1", "shear", "7 3")):
+        axes.line(angle, values, "c" + cls, stroke_dasharray=dashes)
         top = int(np.abs(values).argmax())
-        axes.names(np.degrees(angle[top:top + 1]), values[top:top + 1] + 0.04 * np.abs(normal).max(), [name],
-                   f"s b f{cls[1]}")
+        axes.say(axes.x(angle[top]), axes.y(values[top]) - 6, name, "s b m h f" + cls)
     return svg(width, height, drawn + str(axes), alt(drawn))
 
 
@@ -263,100 +292,78 @@ def fleet(result, rovers, size=SIZE, spans=None, ghosts=()):
     order = {}
     for m, r, n in zip(masses.round(6).tolist(), ranges.round(6).tolist(), names.tolist()):
         order.setdefault((m, r), []).append(n)           # rovers at one place share a name
-    around = [] if spans is None else spans[0]
-    tops = [ranges, result.range_km, [] if spans is None else spans[1], [g.range_km for *_, g in ghosts]]
-    low, high = (f([*masses, *around, result.total_mass_kg, *(g.total_mass_kg for *_, g in ghosts)])
-                 for f in (min, max))
-    axes = Axes((50, 26, width - 14, height - 44), (0.8 * low, 1.3 * high), span(*tops, zero=True, room=0.1), log=True)
+    (x0, x1), (y0, y1) = spans or [(result.total_mass_kg,) * 2, (result.range_km,) * 2]
+    others = [other for *_, other in ghosts]
+    across = [*masses, x0, x1, result.total_mass_kg, *(other.total_mass_kg for other in others)]
+    up = span(ranges, [y0, y1, result.range_km], [other.range_km for other in others], zero=True, room=0.1)
+    axes = Axes((50, 26 if width > 460 else 44, width - 14, height - 44), (0.8 * min(across), 1.3 * max(across)), up,
+                log=True)
     axes.frame("Range", "km", "mass (kg), logarithmic")
-    places = np.array(list(order))
-    for m, r in places:
-        axes.parts.append(f'<rect class="f1" x="{axes.x(m) - 4:.1f}" y="{axes.y(r) - 4:.1f}" width="8" height="8"/>')
-    axes.names(places[:, 0], places[:, 1], [", ".join(found) for found in order.values()])
-    if spans is not None:
-        (x0, x1), (y0, y1) = spans
-        axes.parts.append(f'<path class="l c0" style="stroke-width:1.3" d="M{axes.x(x0):.1f} '
-                          f'{axes.y(result.range_km):.1f}H'
-                          f'{axes.x(x1):.1f}M{axes.x(result.total_mass_kg):.1f} {axes.y(y0):.1f}V{axes.y(y1):.1f}"/>')
+    axes.add("path", "l c0 t", d=f"M{axes.x(x0):.1f} {axes.y(result.range_km):.1f}H{axes.x(x1):.1f}"
+                                 f"M{axes.x(result.total_mass_kg):.1f} {axes.y(y0):.1f}V{axes.y(y1):.1f}")
+    for m, r in order:
+        axes.mark(m, r, "square", "f1", 4)
+    for _, cls, other in ghosts:
+        axes.mark(other.total_mass_kg, other.range_km, cls="l " + cls, size=6)
+    axes.mark(result.total_mass_kg, result.range_km, size=6)
     for name, cls, other in ghosts:
-        axes.dot(other.total_mass_kg, other.range_km, f"n l {cls}", 6)
-        axes.names(np.array([other.total_mass_kg]), np.array([other.range_km]), [name], "s b f" + cls[1])
-    axes.dot(result.total_mass_kg, result.range_km, "f0", 6)
-    axes.parts.append(f'<circle class="f0" cx="{width - 208}" cy="10" r="5"/>'
-                      + text(width - 198, 14, "this design", "s")
-                      + f'<rect class="f1" x="{width - 122}" y="6" width="8" height="8"/>'
-                      + text(width - 109, 14, "published rovers", "s"))
-    others = ", ".join(f"{n} {r:.1f} km" for n, r in zip(names, ranges))
+        axes.name(other.total_mass_kg, other.range_km, name, "s b f" + cls[1])
+    for (m, r), found in order.items():
+        axes.name(m, r, ", ".join(found))
+    axes.legend(("this design", "dot", "f0"), ("published rovers", "square", "f1", {"size": 4}))
+    rest = ", ".join(f"{n} {r:.1f} km" for n, r in zip(names, ranges))
     return svg(width, height, str(axes), f"Range against mass: this design reaches {result.range_km:.2f} km with "
-               f"{result.total_mass_kg:.1f} kg; on the same mission {others}.")
+               f"{result.total_mass_kg:.1f} kg; on the same mission {rest}.")
 
 
 def why(metric, names, values, before, after, baseline, size=SIZE):
     """Contributions of the design variables as steps from a baseline to this design."""
-    width, height = size
-    values = np.asarray(values, float)
-    words, unit = label(metric)
-    least = max(1e-3 * np.abs(values).max(initial=0), 1e-9 * max(abs(before), abs(after)),
-                1e-12)        # below: rounding
+    values, (words, unit) = np.asarray(values, float), label(metric)
+    least = max(1e-3 * np.abs(values).max(initial=0), 1e-9 * max(abs(before), abs(after)), 1e-12)    # below: rounding
     order = [i for i in np.argsort(-np.abs(values)) if abs(values[i]) > least]
-    shown = order[:9]
+    shown = order[:min(max(int((size[1] - 88) / 15) - 3, 1), 9)]
     rest = values.sum() - values[shown].sum()
-    rows = [(names[i], float(values[i])) for i in shown] + ([("the rest", float(rest))] if abs(rest) > least else [])
-    if not rows:
-        said = f"The same {words} as {baseline}: {after:.4g} {unit}. Move a slider, or choose another baseline."
-        return svg(width, height, text(width / 2, height / 2, said[:200], "m"), said)
-    edges = before + np.concatenate([[0.0], np.cumsum([step for _, step in rows])])
-    axes = Axes((122, 44, width - 50, height - 44), span(edges, room=0.08), (0, 1)).frame(below=named(metric))
-    axes.parts = [part for part in axes.parts if " e\"" not in part and "H" not in part]
-    tall = (axes.box[3] - axes.box[1]) / max(len(rows), 4)
-    for k, (name, step) in enumerate(rows):
-        y, (a, b) = axes.box[1] + k * tall, sorted((float(axes.x(edges[k])), float(axes.x(edges[k + 1]))))
-        axes.parts.append(f'<rect class="{"f0" if step > 0 else "f1"}" opacity=".85" x="{a:.1f}" '
-                          f'y="{y + 0.16 * tall:.1f}" '
-                          f'width="{max(b - a, 1):.1f}" height="{0.68 * tall:.1f}"/>'
-                          + text(114, y + tall / 2 + 4, name, "s e")
-                          + text(b + 5, y + tall / 2 + 4, f"{step:+.3g}", "s"))
-    for value, dash in ((before, "2 3"), (after, "7 4")):
-        axes.parts.append(f'<path class="a" stroke-dasharray="{dash}" d="M{axes.x(value):.1f} '
-                          f'{axes.box[1]}V{axes.box[3]}"/>')
-    said = f"{words}: {baseline} (dotted) {before:.4g} to this design (dashed) {after:.4g} {unit}"
-    axes.parts.append(text(8, 14, said if 7 * len(said) < width else f"{words}: from {before:.4g} to {after:.4g} "
-                           f"{unit}", "b")
-                      + text(8, 30, "▮ more", "s f0") + text(66, 30, "▮ less, to the left", "s f1"))
-    steps = "; ".join(f"{name} {step:+.3g}" for name, step in rows)
-    return svg(width, height, str(axes), f"Steps from {before:.4g} ({baseline}) to {after:.4g} in {named(metric)}: "
-               f"{steps}.")
+    steps = [(names[i], float(values[i])) for i in shown] + ([("the rest", float(rest))] if abs(rest) > least else [])
+    if not steps:
+        return message(size, f"The same {words} as {baseline}: {after:.4g} {unit}. Move a slider, or choose another "
+                             "baseline.")
+    edges = before + np.cumsum([0.0, *(step for _, step in steps)])
+    first, last = ((name, value, value, f"{value:.4g}", [("", "c3", value)])
+                   for name, value in ((baseline, before), ("this design", after)))
+    rows = [(name, a, b, f"{step:+.3g}", []) for (name, step), a, b in zip(steps, edges, edges[1:])]
+    axes = bars(size, 40, [first, *rows, last], named(metric), joined=True)
+    said = f"{words}: {baseline} {before:.4g} to this design {after:.4g} {unit}"
+    axes.say(8, 14, said if 7 * len(said) < size[0] else f"{words}: from {before:.4g} to {after:.4g} {unit}", "b")
+    axes.parts += (sign("square", "f0", 14, 26, 4), text(22, 30, "more", "s"), sign("square", "l c1", 66, 26, 4),
+                   text(74, 30, "less, open, to the left", "s"))
+    return svg(*size, str(axes), f"Steps from {before:.4g} ({baseline}) to {after:.4g} in {named(metric)}: "
+               + "; ".join(f"{name} {step:+.3g}" for name, step in steps) + ".")
 
 
 def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, size=SIZE, log=False):
     """One metric along one variable, with its interval (where, low, high), this design, and the published rovers."""
     width, height = size
-    words, unit = label(metric)
-    axes = Axes((56, 26, width - 14, height - 44), (float(values[0]), float(values[-1])),
-                span(nominal, *band[1:], here[1]), log)
     if not np.isfinite(nominal).any():
-        said = f"{words} has no value at any {x_label}: the wheel is buried"
-        return svg(width, height, text(width / 2, height / 2, said, "m"), said)
-    for cut in np.flatnonzero(np.diff(np.asarray(stalled, int))):
-        x, side = float(axes.x((values[cut] + values[cut + 1]) / 2)), "e" if stalled[cut] else ""
-        axes.parts.append(f'<path class="a" stroke-dasharray="2 3" d="M{x:.1f} 26V{height - 44}"/>'
-                          + text(x + (-5 if side else 5), 38, "cannot drive", f"q s {side}"))
-    axes.frame(words.capitalize(), unit, x_label)
-    axes.area(band[0], band[1], band[2])
-    axes.line(values, nominal, "c0")
-    if rovers is not None:
-        inside = (rovers[0] >= values[0]) & (rovers[0] <= values[-1]) & np.isfinite(rovers[1])
-        xs, ys = rovers[0][inside], np.clip(rovers[1][inside], *axes.ys)
-        for x, y in zip(xs, ys):
-            axes.parts.append(f'<rect class="f1" x="{axes.x(x) - 3.5:.1f}" y="{axes.y(y) - 3.5:.1f}" width="7" '
-                              'height="7"/>')
-        axes.names(xs, ys, np.asarray(rovers[2])[inside])
+        return message(size, f"{label(metric)[0]} has no value at any {x_label}: the wheel is buried")
+    axes = Axes((56, 26 if width > 500 else 44, width - 14, height - 44), (float(values[0]), float(values[-1])),
+                span(nominal, *band[1:], here[1]), log)
+    axes.parts.append(HATCH)
+    axes.stretches(np.concatenate([values[:1], (values[1:] + values[:-1]) / 2, values[-1:]]), stalled, **HATCHED)
+    axes.frame(*label(metric), x_label)
+    axes.area(*band)
+    axes.line(values, nominal)
+    points = [] if rovers is None else [(x, float(np.clip(y, *axes.ys)), name) for x, y, name in zip(*rovers)
+                                        if values[0] <= x <= values[-1] and np.isfinite(y)]
+    for x, y, _ in points:
+        axes.mark(x, y, "square", "f1", 3.5)
     if np.isfinite(here[1]):
-        axes.dot(*here, "f3", 6)
-    axes.parts.append(text(width - 14, 14, "● this design" + "   band: 90 % of draws" * (width > 460), "s q e"))
+        axes.mark(*here, cls="f3", size=6)
+    for point in points:
+        axes.name(*point)
+    stalls = [("cannot drive", "square", "", HATCHED)] if np.any(stalled) else []
+    axes.legend(("this design", "dot", "f3"), ("90 % of draws", "square", "f0", {"opacity": 0.3}), *stalls)
     return svg(width, height, str(axes), f"{named(metric)} against {x_label}: from {nominal[0]:.3g} at {values[0]:.3g} "
-               "to "
-               f"{nominal[-1]:.3g} at {values[-1]:.3g}; this design has {here[1]:.3g} at {here[0]:.3g}."
+               f"to {nominal[-1]:.3g} at {values[-1]:.3g}; this design has {here[1]:.3g} at {here[0]:.3g}."
                .replace("nan", "no value"))
 
 
@@ -364,85 +371,72 @@ def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
     """One metric over two variables: shades, labelled contours, hatching where the rover cannot drive, this design."""
     from contourpy import contour_generator
     width, height = size
-    axes = Axes((56, 26, width - 86, height - 44), (float(xs[0]), float(xs[-1])), (float(ys[0]), float(ys[-1])))
+    axes = Axes((56, 42, width - 86, height - 44), (float(xs[0]), float(xs[-1])), (float(ys[0]), float(ys[-1])))
     low, high = span(grid, room=0)
     field, edges = contour_generator(xs, ys, np.where(np.isfinite(grid), grid, np.nan).T), np.linspace(low, high, 11)
     outer = edges + np.r_[-1, np.zeros(9), 1] * 1e-9 * max(abs(low), abs(high), 1)
 
-    def path(points, close=""):
-        return "M" + "L".join(f"{a:.1f} {b:.1f}" for a, b in zip(axes.x(points[:, 0]), axes.y(points[:, 1]))) + close
+    def drawn(points, close=""):
+        return path(axes.x(points[:, 0]), axes.y(points[:, 1]), close)
 
-    for k, a in enumerate(edges[:-1]):
-        polygons, offsets = field.filled(outer[k], outer[k + 1])
-        outlines = "".join(path(points[i:j], "Z") for points, starts in zip(polygons, offsets) for i,
-                           j in zip(starts, starts[1:]))
-        axes.parts.append(f'<path fill="{shade((k + 0.5) / 10)}" fill-rule="evenodd" d="{outlines}"/>')
-        y = height - 44 - (height - 90) * k / 10
-        axes.parts.append(f'<rect fill="{shade((k + 0.5) / 10)}" x="{width - 74}" y="{y - (height - 90) / 10:.1f}" '
-                          'width="14" '
-                          f'height="{(height - 90) / 10 + 0.5:.1f}"/>' + text(width - 56, y + 4, f"{a:.3g}", "q s"))
-    axes.parts.append(text(width - 56, 46 + 4, f"{high:.3g}", "q s"))
+    def fill(field, a, b, **look):
+        outlines = [drawn(points[i:j], "Z") for points, starts in zip(*field.filled(a, b))
+                    for i, j in zip(starts, starts[1:])]
+        axes.add("path", "", d="".join(outlines), fill_rule="evenodd", **look)
+
+    for k in range(10):
+        fill(field, outer[k], outer[k + 1], fill=shade((k + 0.5) / 10))
+    if stalled.any():
+        axes.parts.append(HATCH)
+        fill(contour_generator(xs, ys, stalled.T.astype(float)), 0.5, 2, **HATCHED)
+    axes.frame(y_label, below=x_label)
     for level in edges[2:-1:2] if np.nanmax(grid) > np.nanmin(grid) else ():
         for points in field.lines(level):
-            axes.parts.append(f'<path class="n" stroke="#fff" opacity=".8" d="{path(points)}"/>')
-            if len(points) > 8:
-                x, y = points[len(points) // 2]
-                axes.parts.append('<text class="s m" '
-                                  'style="fill:#fff;stroke:#0008;stroke-width:2.5;paint-order:stroke" '
-                                  f'x="{axes.x(x):.1f}" y="{axes.y(y) + 4:.1f}">{level:.3g}</text>')
-    if stalled.any():
-        outlines = "".join(path(points[i:j], "Z") for points, starts in
-                           zip(*contour_generator(xs, ys, stalled.T.astype(float)).filled(0.5, 2)) for i,
-                           j in zip(starts, starts[1:]))
-        axes.parts.append('<pattern id="rdk-hatch" width="7" height="7" patternUnits="userSpaceOnUse" '
-                          'patternTransform="rotate(45)">'
-                          '<path d="M0 0V7" stroke="#fff" stroke-width="1.6"/></pattern><path fill="url(#rdk-hatch)" '
-                          f'd="{outlines}"/>')
-    axes.frame(y_label, below=x_label)
-    axes.dot(*here, "", 6, 'fill="#fff" stroke="#000" stroke-width="2"')
-    axes.parts.append(text(width - 4, 14, named(metric) + (", hatched: cannot drive" if stalled.any() else ""),
-                           "s b e"))
+            axes.add("path", "n", d=drawn(points), stroke="#fff", opacity=0.8)
+            x, y = axes.x(points[len(points) // 2, 0]), axes.y(points[len(points) // 2, 1])
+            if len(points) > 8 and all(abs(x - a) > 24 or abs(y - b) > 12 for a, b in axes.taken):
+                axes.taken.append((x, y))
+                axes.add("text", "s m", f"{level:.3g}", x=x, y=y + 4,
+                         style="fill:#fff;stroke:#0008;stroke-width:2.5;paint-order:stroke")
+    axes.mark(*here, cls="", size=6, fill="#fff", stroke="#000", stroke_width=2)
+    axes.scale(low, high, "")
+    axes.say(width - 4, 14, named(metric) + ", hatched: cannot drive" * bool(stalled.any()), "s b e")
     return svg(width, height, str(axes), f"Map of {named(metric)} over {x_label} and {y_label}: from "
-               f"{np.nanmin(grid):.3g} to "
-               f"{np.nanmax(grid):.3g}; the circle marks this design.")
+               f"{np.nanmin(grid):.3g} to {np.nanmax(grid):.3g}; the circle marks this design.")
 
 
-def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="", stale="", ghosts=()):
+def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="", stale="", ghosts=(), designs=None):
     """A front: one metric against another, coloured by a third; dots can be picked, this design is a cross.
 
-    `faded` marks dots that miss a demand, `stale` says that the front belongs to another mission.
+    `faded` marks dots that miss a demand, `stale` says that the front belongs to another mission; `designs` are told
+    with the dots. The scale of the metric "odds" is 0 to 1.
     """
     width, height = size
     if not len(x):
-        return svg(width, height, text(14, 16, title, "b") + text(width / 2, height / 2,
-                                                                  "no design meets the constraints", "m"),
-                   f"{title}: an empty front, no design meets the constraints.")
-    faded = np.zeros(len(x), bool) if faded is None else faded
-    axes = Axes((54, 42, width - 92, height - 44), span(x, here[0]), span(y, here[1]))
-    words, unit = label(names[1])
-    axes.frame(words.capitalize(), unit, named(names[0]), count=5)
-    low, high = span(colour, room=0)
-    for i in range(len(x)):
-        said = ", ".join(f"{label(n)[0]} {v[i]:.4g} {label(n)[1]}".strip() for n, v in zip(names, (x, y, colour)))
-        first = i == (0 if picked is None else picked)
-        axes.dot(x[i], y[i], "rdk-pick", 6, f'fill="{shade((colour[i] - low) / (high - low))}" stroke="currentColor" '
-                 f'stroke-width="{2.6 if i == picked else 0.7}" opacity="{0.25 if faded[i] else 1}" '
-                 f'tabindex="{0 if first else -1}" '
-                 f'role="button" data-do="point:{i}" aria-label="{said}"', f"<title>{said}</title>")
-    for name, cls, other in ghosts:
-        axes.dot(getattr(other, names[0]), getattr(other, names[1]), f"n l {cls}", 8,
-                 inside=f"<title>{html.escape(name)}</title>")
-    a, b = float(axes.x(here[0])), float(axes.y(here[1]))
-    axes.parts.append(f'<path class="l c1" style="stroke-width:3" d="M{a - 6:.1f} {b - 6:.1f}l12 12m0 -12l-12 12"/>')
-    axes.names(np.array([here[0]]), np.array([here[1]]), ["this design"], "s b")
-    for k in range(10):
-        axes.parts.append(f'<rect fill="{shade((k + 0.5) / 10)}" x="{width - 78}" '
-                          f'y="{height - 44 - (k + 1) * (height - 110) / 10:.1f}" '
-                          f'width="12" height="{(height - 110) / 10 + 0.5:.1f}"/>')
-    axes.parts.append(text(width - 60, height - 42, f"{low:.3g}", "q s") + text(width - 60, 72, f"{high:.3g}", "q s")
-                      + text(width - 4, 52, label(names[2])[0], "s e") + text(8, 14, title, "b")
-                      + (text(8, 28, stale, "bad") if stale else ""))
-    body = f'<g opacity=".45">{axes}</g>' + text(8, 28, stale, "bad") if stale else str(axes)
+        return message(size, f"{title}: an empty front, no design meets the constraints.")
+    others = [(name, cls, [float(getattr(other, field)) for field in names[:2]]) for name, cls, other in ghosts]
+    axes = Axes((54, 62 if stale else 44, width - 86, height - 44),
+                *(span(values, here[i], [at[i] for *_, at in others]) for i, values in enumerate((x, y))))
+    axes.frame(*label(names[1]), named(names[0]), count=5)
+    low, high = (0.0, 1.0) if names[2] == "odds" else span(colour, room=0)
+    columns = [(*label(name), values.tolist()) for name, values in zip(names, (x, y, colour))]
+    columns += [] if designs is None else [(v.label, v.unit if v.unit != "1" else "", getattr(designs, n).tolist())
+                                           for n, v in DESIGN_SPACE.items()]
+    for i, point in enumerate(zip(*(values for *_, values in columns))):
+        said = [f"{words} {value:.4g} {unit}".strip() for (words, unit, _), value in zip(columns, point)]
+        axes.mark(x[i], y[i], cls="rdk-pick", size=6, inside=f"<title>{', '.join(said)}</title>",
+                  fill=shade((colour[i] - low) / (high - low)), stroke="currentColor",
+                  stroke_width=2.6 if i == picked else 0.7, opacity=0.25 if faded is not None and faded[i] else 1,
+                  tabindex=0 if i == (picked or 0) else -1, role="button", data_do=f"point:{i}",
+                  aria_label=", ".join(said[:3]))
+    for name, cls, at in others:
+        axes.mark(*at, cls="l " + cls, size=8)
+        axes.name(*at, name, "s b f" + cls[1])
+    axes.mark(*here[:2], "cross", "l c1", 6)
+    axes.name(*here[:2], "this design", "s b")
+    axes.scale(low, high, label(names[2])[0])
+    body = element("g", "", str(axes), opacity=0.45 if stale else 1)
+    body += text(8, 14, title, "b" if 7.5 * len(title) < width else "s b") + text(8, 30, stale, "bad s")
     spans = ", ".join(f"{named(n)} from {min(v):.3g} to {max(v):.3g}" for n, v in zip(names, (x, y, colour)))
     return svg(width, height, body, f"{title}. Front of {len(x)} designs: {spans}." + (f" {stale}" if stale else ""),
                "group")

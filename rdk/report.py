@@ -6,38 +6,53 @@ from __future__ import annotations
 
 import base64
 import functools
-import html as html_module
-import re
+import html
+from string import Template
 from typing import NamedTuple
 
 import numpy as np
 
 from . import catalog, explain, pictures
 from ._fields import require
-from .catalog import write as write
+from .catalog import write
 from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import evaluate
 from .rover_picture import rover_picture
-from .sampling import attribution, intervals, uncertain_inputs
+from .sampling import attribution, holds, intervals, single, uncertain_inputs
 from .tradespace import posed
 from .uncertainty import DRAWS
 
-STYLE = """
+PAGE = Template("""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8">
+<title>$title</title>
+<style>
 @page { size: A4; margin: 11mm }
 body { font: 8.5pt/1.32 "Liberation Sans", Arial, Helvetica, sans-serif; color: #000; background: #fff;
        max-width: 188mm; margin: 0 auto }
 h1 { font-size: 15pt; margin: 0 0 1mm } h2 { font-size: 10pt; margin: 2.5mm 0 1mm } p { margin: 0 0 1.2mm }
 table { border-collapse: collapse; width: 100% } td, th { padding: 0.25mm 1.5mm; text-align: right }
-td:first-child, th:first-child { text-align: left } th { border-bottom: 0.3mm solid #000; text-align: right }
+td:first-child, th:first-child { text-align: left } th { border-bottom: 0.3mm solid #000 }
 tr.missed td { font-weight: bold } .verdict { border-left: 1.2mm solid #0072B2; padding-left: 2mm }
 .verdict.missed { border-color: #D55E00 } .small { font-size: 7.5pt }
 .columns { display: grid; grid-template-columns: 1fr 1fr; gap: 1mm 5mm }
 .columns svg { width: 100%; height: auto } .wide { grid-template-columns: 24fr 34fr 42fr }
 @media screen { body { padding: 6mm } }
 @media print { .screen { display: none } }
-"""
-_UNITS = re.compile("(_(kg|kn|m|m2|n1|n2|nm|w|wh|mm|deg|kpa))+$")
-SIZE = 470, 215                                         # of a picture, in pixels of its own
+</style></head><body>
+<h1>$title</h1>
+<p>$mission</p>
+<p class="verdict$mark"><b>$verdict</b> $binds</p>
+<div class="columns wide"><div>$rover</div><div><h2>Design</h2>$design</div>
+<div><h2>Demands</h2>$demands<h2>Risks</h2>$risks</div></div>
+$candidates<div class="columns">$drawn</div>
+$notes<p class="small">Intervals: $draws draws from data/uncertainties.csv, 5 % to 95 %; they cover soil and
+coefficients, not what the models leave out: tip-over, load transfer, terrain shadows, multi-pass, and structure that
+must grow with its load. Model: $model.</p>
+<p class="screen"><a download="design.json" href="data:application/json;base64,$data">design.json</a>: open it in the
+explorer.</p>
+</body></html>
+""")
+SIZE = 470, 215                                          # of a picture, in pixels of its own
 
 
 class Requirement(NamedTuple):
@@ -59,108 +74,66 @@ class Requirement(NamedTuple):
     @property
     def words(self):
         """The demand, in words."""
-        if self.metric == "feasible":
-            return "drives the mission"
-        name, unit = pictures.label(self.metric)
-        return f"{name} {'≥' if self.sign == '>=' else '≤'} {self.limit:g} {unit}".rstrip()
+        name, unit = explain.label(self.metric)
+        asked = f"{name} {'≥' if self.sign == '>=' else '≤'} {self.limit:g} {unit}".rstrip()
+        return name if self.metric == "feasible" else asked
+
+
+def asked(scenario):
+    """The demands of a mission's problem; that the rover drives the mission comes first."""
+    return [("feasible", ">=", 1.0), *posed(scenario)[1].constraints]
 
 
 def requirements(design, scenario, *, draws=DRAWS, seed=0, model=Model()):
-    """The demands of a mission's problem on a single design, each with its chance to hold.
+    """The demands of a mission's problem on a single design as Requirements, each with its chance to hold.
 
-    Parameters
-    ----------
-    design : Design
-    scenario : Scenario
-        Single ones. Its `problem.constraints` are the demands; that the rover drives the mission comes first.
-    draws, seed : int
-        Of the Monte-Carlo intervals.
-    model : Model
-
-    Returns
-    -------
-    list of Requirement
-
-    Notes
-    -----
     A share covers the table of uncertainties and nothing that the models leave out.
     """
-    require(design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
-    for name, record in ("design", design), ("scenario", scenario), ("model", model):
-        if record.shape:
-            raise ValueError(f"{name} must be a single one; got arrays of shape {record.shape}")
+    from scipy.stats import rankdata                     # slow to load
+    single(design=design, scenario=scenario, model=model)
     found = intervals(design, scenario, draws=draws, seed=seed, model=model)
-    inputs = uncertain_inputs(scenario, draws=draws, seed=seed, model=model)
-    demands = [("feasible", ">=", 1.0), *posed(scenario)[1].constraints]
-    return [_requirement(metric, sign, limit, found, inputs) for metric, sign, limit in demands]
+    ranks = {name: rankdata(values) for name, values in uncertain_inputs(scenario, draws=draws, seed=seed,
+                                                                         model=model).items() if np.ptp(values) > 0}
+    rows = []
+    for demand in asked(scenario):
+        metric, sign, limit = demand
+        values = np.nan_to_num(np.asarray(getattr(found.draws, metric), float))
+        strength = {name: abs(np.corrcoef(rank, rankdata(values))[0, 1]) for name, rank in ranks.items()
+                    } if np.ptp(values) > 0 else {}
+        rows.append(Requirement(metric, sign, float(limit), *(float(v) for v in (
+            found.nominal[metric], found.low[metric], found.high[metric])), bool(holds(found.performance, demand)),
+            float(holds(found.draws, demand).mean()), max(strength, key=strength.get, default="")))
+    return rows
 
 
 def joint_odds(design, scenario, *, draws=DRAWS, seed=0, model=Model()):
-    """Share of the Monte-Carlo draws in which a single design drives and meets every demand of the mission at once."""
-    wanted = [("feasible", ">=", 1), *posed(scenario)[1].constraints]
-    return float(intervals(design, scenario, draws=draws, seed=seed, model=model).share(wanted))
+    """Share of the Monte-Carlo draws in which a design drives and meets every demand of the mission at once."""
+    return intervals(design, scenario, draws=draws, seed=seed, model=model).share(asked(scenario))
 
 
 @functools.cache
 def published():
     """Names of the published rovers, and their designs as one population."""
-    names = catalog.rover_names()
-    rovers = [catalog.rover(name) for name in names]
-    return names, Design(**{name: np.array([getattr(rover, name) for rover in rovers]) for name in DESIGN_SPACE})
-
-
-def _requirement(metric, sign, limit, found, inputs):
-    from scipy.stats import rankdata                     # slow to load
-    values = np.asarray(getattr(found.draws, metric), float)
-    nominal = float(found.nominal[metric])
-    holds = values >= limit if sign == ">=" else values <= limit             # false where NaN
-    met = nominal >= limit if sign == ">=" else nominal <= limit
-    values = np.nan_to_num(values)
-    strength = {name: abs(np.corrcoef(rankdata(draw), rankdata(values))[0, 1])
-                for name, draw in inputs.items()
-                if np.ptp(draw) > 0 and np.ptp(values) > 0}
-    driver = max(strength, key=strength.get, default="")
-    return Requirement(metric, sign, float(limit), nominal, float(found.low[metric]),
-                       float(found.high[metric]),
-                       bool(met), float(holds.mean()), driver)
+    return catalog.rover_names(), Design.stack(map(catalog.rover, catalog.rover_names()))
 
 
 def report(design, scenario, title, notes="", *, front=None, baseline=None, baseline_name="the baseline",
            why="total_mass_kg", bounds=None, candidates=None, model=Model(), draws=DRAWS):
-    """A one-page report on a design, as the text of an HTML file.
+    """A one-page report on a single design and the demands of a single mission's problem, as the text of an HTML file.
 
     Parameters
     ----------
-    design : Design
-    scenario : Scenario
-        Single ones; the scenario's problem gives the demands.
-    title : str
-    notes : str
-        What to know beyond the tables: choices, risks, doubts. An empty line starts a paragraph.
+    title, notes : str
+        The notes say what to know beyond the tables: choices, risks, doubts; an empty line starts a paragraph.
     front : Front, optional
         Shown with the design on it; without one, the published rovers are shown on this mission.
     baseline : Design, optional
-        Whose difference to the design is attributed to the variables; by default the published rover that is
-        nearest in mass on this mission.
-    baseline_name : str
-    why : str
-        The metric whose difference is attributed.
+        Whose difference to the design, in the metric `why`, is attributed to the variables; by default the published
+        rover that is nearest in mass on this mission.
     bounds : dict of str to (float, float), optional
         Limits of design variables that the project sets, in place of those in DESIGN_SPACE.
     candidates : dict of str to Design, optional
         Other designs, shown beside this one.
-    model : Model
-    draws : int
-        Of the Monte-Carlo intervals.
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    ValueError
-        If an input holds arrays, the title is empty or `why` is no metric.
 
     Examples
     --------
@@ -181,33 +154,49 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
     shares = attribution(design, baseline, scenario, model=model)
     if why not in shares.contributions:
         raise ValueError(f"why: no metric {why!r}; choose from {', '.join(shares.contributions)}")
-    drawn = [
-        _on_front(front, result) if front is not None and len(front) else
-        pictures.fleet(result, (rovers.total_mass_kg, rovers.range_km, names), SIZE),
-        pictures.mass(result, SIZE), pictures.log(result, scenario, model.soc_initial, SIZE),
-        pictures.why(why, [variable.label for variable in DESIGN_SPACE.values()], shares.contributions[why],
-                     getattr(shares.baseline_performance, why), getattr(shares.performance, why), baseline_name, SIZE)]
-    odds = joint_odds(design, scenario, draws=draws, model=model)
+    drawn = [_on_front(front, result) if front is not None and len(front) else
+             pictures.fleet(result, (rovers.total_mass_kg, rovers.range_km, names), SIZE),
+             pictures.mass(result, SIZE), pictures.log(result, scenario, model.soc_initial, SIZE),
+             pictures.why(why, [variable.label for variable in DESIGN_SPACE.values()], shares.contributions[why],
+                          getattr(shares.baseline_performance, why), getattr(shares.performance, why), baseline_name,
+                          SIZE)]
+    designs = {"this design": design, **(candidates or {})}
+    stack = Design.stack(designs.values())
+    odds, found = joint_odds(stack, scenario, draws=draws, model=model), evaluate(stack, scenario, model=model)
     missed = [d.words for d in demands if not d.met]
     verdict = f"Misses {len(missed)} of {len(demands)} demands: {'; '.join(missed)}." if missed else (
         f"Meets all {len(demands)} demands of the mission.")
-    verdict += f" All hold at once in {100 * odds:.0f} % of the draws."
-    binds = explain.binding(design, scenario, result, model=model).sentence
-    return "\n".join([
-        "<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8">', f"<title>{_text(title)}</title>",
-        f"<style>{STYLE}</style></head><body>", f"<h1>{_text(title)}</h1>",
-        f"<p>{_text(_mission_words(scenario))}</p>",
-        f'<p class="verdict{" missed" * bool(missed)}"><b>{_text(verdict)}</b> {_text(binds)}</p>',
-        '<div class="columns wide"><div>', rover_picture(design, result, scenario, width=250), "</div><div>",
-        "<h2>Design</h2>", _design_table(design, bounds),
-        "</div><div>", "<h2>Demands</h2>", _demand_table(demands),
-        "<h2>Risks</h2>", *(f"<p>{_text(words)}</p>" for words in _risks(demands)), "</div></div>",
-        *_side_by_side({"this design": design, **(candidates or {})}, scenario, draws, model),
-        '<div class="columns">', *drawn, "</div>",
-        *(["<h2>Notes</h2>"] if notes.strip() else []),
-        *(f"<p>{_text(part)}</p>" for part in notes.split("\n\n") if part.strip()),
-        f'<p class="small">{_text(_small_print(model, draws))}</p>', _download(design, scenario),
-        "</body></html>", ""])
+    changed = {name: value for name, value in model.numbers().items() if value != getattr(Model(), name)}
+    limits = {name: (v.low, v.high) for name, v in DESIGN_SPACE.items()} | (bounds or {})
+    outside = {name: not low * (1 - 1e-12) <= getattr(design, name) <= high * (1 + 1e-12)
+               for name, (low, high) in limits.items()}
+    at_risk = sorted((d for d in demands if d.share < 0.995), key=lambda d: d.share)[:3]
+    return PAGE.substitute(
+        title=_text(title), mission=_text(_mission_words(scenario)), mark=" missed" * bool(missed),
+        verdict=_text(f"{verdict} All hold at once in {100 * odds[0]:.0f} % of the draws."),
+        binds=_text(explain.binding(design, scenario, result, model=model).sentence),
+        rover=rover_picture(design, result, scenario, width=250),
+        design=_table("variable;value;allowed", [
+            (outside[name], v.label, f"{getattr(design, name):.4g} {v.unit if v.unit != '1' else ''}".rstrip(),
+             f"{limits[name][0]:g} to {limits[name][1]:g}" + ", outside" * outside[name])
+            for name, v in DESIGN_SPACE.items()]),
+        demands=_table("demand;design;90 % interval;holds in", [
+            (not d.met, d.words, *(("yes" if d.met else "no", "–") if d.metric == "feasible" else
+                                   (f"{d.nominal:.3g}", f"{d.low:.3g} to {d.high:.3g}")), f"{100 * d.share:.0f} %")
+            for d in demands]),
+        risks=_paragraphs([
+            f"“{d.words}” fails in {100 * (1 - d.share):.0f} % of the draws"
+            + (f"; it moves most with the {explain.label(d.driver)[0]}." if d.driver else ".") for d in at_risk]
+            or ["Every demand holds in all draws of the uncertain inputs."]),
+        candidates="<h2>Candidates</h2>" * bool(candidates) + _table(
+            "design;mass;range;slope capability;all demands hold in", [
+                (False, name, f"{p.total_mass_kg:.2f} kg", f"{p.range_km:.3g} km", f"{p.slope_capability_deg:.1f}°",
+                 f"{100 * share:.0f} %") for name, p, share in zip(designs, found, odds)]) * bool(candidates),
+        drawn="\n".join(drawn), notes="<h2>Notes</h2>" * bool(notes.strip()) + _paragraphs(
+            part for part in notes.split("\n\n") if part.strip()),
+        draws=draws, model=_text(", ".join(f"{name} = {value:g}" for name, value in changed.items())
+                                 or "the paper's coefficients"),
+        data=base64.b64encode(catalog.to_json(design, scenario).encode()).decode())
 
 
 def write_report(design, scenario, path, title=None, notes="", **options):
@@ -227,7 +216,19 @@ def write_report(design, scenario, path, title=None, notes="", **options):
 
 
 def _text(words):
-    return html_module.escape(str(words), quote=False)
+    return html.escape(str(words), quote=False)
+
+
+def _paragraphs(words):
+    return "".join(f"<p>{_text(part)}</p>" for part in words)
+
+
+def _table(header, rows):
+    """A table; the cells of a row follow whether it misses its demand."""
+    head, mark = "".join(f"<th>{_text(cell)}</th>" for cell in header.split(";")), ' class="missed"'
+    body = "".join(f"<tr{mark * bool(missed)}>" + "".join(f"<td>{_text(cell)}</td>" for cell in cells) + "</tr>"
+                   for missed, *cells in rows)
+    return f"<table><tr>{head}</tr>{body}</table>"
 
 
 def _on_front(front, result):
@@ -240,82 +241,13 @@ def _on_front(front, result):
     names = ["total_mass_kg", *others, "range_km", "slope_capability_deg"][:3]
     return pictures.front(*(np.asarray(getattr(front.performance, name), float) for name in names), names,
                           [float(getattr(result, name)) for name in names], SIZE,
-                          title=f"Front of {len(front)} designs")
-
-
-def _side_by_side(designs, scenario, draws, model):
-    """A table of candidates, where there is more than one."""
-    if len(designs) < 2:
-        return []
-    rows = []
-    for name, design in designs.items():
-        p = evaluate(design, scenario, model=model)
-        rows.append((False, name, f"{p.total_mass_kg:.2f} kg", f"{p.range_km:.3g} km", f"{p.slope_capability_deg:.1f}°",
-                     f"{100 * joint_odds(design, scenario, draws=draws, model=model):.0f} %"))
-    return ["<h2>Candidates</h2>", _rows(("design", "mass", "range", "slope capability", "all demands hold in"), rows)]
+                          title=f"Front of {len(front)} designs", designs=front.designs)
 
 
 def _mission_words(scenario):
-    name = scenario.name.replace("_", " ")
-    return (f"Mission: {name}, latitude {scenario.latitude_deg:g} deg, {scenario.duration_earth_days:g} Earth "
-            f"days from {scenario.start_utc or 'sunrise'}, slopes of {scenario.slope_deg:g} deg in "
-            f"{scenario.soil.name or 'some soil'}, "
-            f"driving {100 * scenario.duty_cycle:g} % of the time, payload {scenario.payload_mass_kg:g} kg, "
+    return (f"Mission: {scenario.name.replace('_', ' ')}, latitude {scenario.latitude_deg:g} deg, "
+            f"{scenario.duration_earth_days:g} Earth days from {scenario.start_utc or 'sunrise'}, slopes of "
+            f"{scenario.slope_deg:g} deg in {scenario.soil.name or 'some soil'}, driving "
+            f"{100 * scenario.duty_cycle:g} % of the time, payload {scenario.payload_mass_kg:g} kg, "
             f"{scenario.payload_power_w:g} W, panel tilt {scenario.panel_tilt_deg:g} deg, range limit "
             f"{scenario.traverse_limit_km:g} km.")
-
-
-def _rows(header, rows):
-    """A table from cells; a row that starts with True is one that misses its demand."""
-    marked = ' class="missed"'
-    head = "".join(f"<th>{_text(cell)}</th>" for cell in header)
-    body = "".join(f"<tr{marked * missed}>" + "".join(f"<td>{_text(cell)}</td>" for cell in cells) + "</tr>"
-                   for missed, *cells in rows)
-    return f"<table><tr>{head}</tr>{body}</table>"
-
-
-def _design_table(design, bounds):
-    rows = []
-    for name, variable in DESIGN_SPACE.items():
-        value = getattr(design, name)
-        low, high = (bounds or {}).get(name, (variable.low, variable.high))
-        outside = not low * (1 - 1e-12) <= value <= high * (1 + 1e-12)
-        unit = f" {variable.unit}" if variable.unit != "1" else ""
-        rows.append((outside, variable.label, f"{value:.4g}{unit}",
-                     f"{low:g} to {high:g}" + ", outside" * outside))
-    return _rows(("variable", "value", "allowed"), rows)
-
-
-def _demand_table(demands):
-    rows = []
-    for d in demands:
-        if d.metric == "feasible":
-            cells = ("yes" if d.met else "no", "–")
-        else:
-            cells = (f"{d.nominal:.3g}", f"{d.low:.3g} to {d.high:.3g}")
-        rows.append((not d.met, d.words, *cells, f"{100 * d.share:.0f} %"))
-    return _rows(("demand", "design", "90 % interval", "holds in"), rows)
-
-
-def _risks(demands):
-    """Sentences on the demands that hold least often, and what moves them."""
-    at_risk = sorted((d for d in demands if d.share < 0.995), key=lambda d: d.share)[:3]
-    if not at_risk:
-        return ["Every demand holds in all draws of the uncertain inputs."]
-    return [f"“{d.words}” fails in {100 * (1 - d.share):.0f} % of the draws"
-            + (f"; it moves most with the {_UNITS.sub('', d.driver).replace('_', ' ')}." if d.driver else ".")
-            for d in at_risk]
-
-
-def _small_print(model, draws):
-    changed = {name: value for name, value in model.numbers().items() if value != getattr(Model(), name)}
-    words = ", ".join(f"{name} = {value:g}" for name, value in changed.items()) or "the paper's coefficients"
-    return (f"Intervals: {draws} draws from data/uncertainties.csv, 5 % to 95 %; they cover soil and "
-            "coefficients, not what the models leave out: tip-over, load transfer, terrain shadows, multi-pass, "
-            f"and structure that must grow with its load. Model: {words}.")
-
-
-def _download(design, scenario):
-    data = base64.b64encode(catalog.to_json(design, scenario).encode()).decode()
-    return ('<p class="screen"><a download="design.json" href="data:application/json;base64,' + data
-            + '">design.json</a>: open it in the explorer.</p>')

@@ -7,198 +7,158 @@ import numpy as np
 
 from . import terramechanics
 from .design import Model
+from .explain import failing
 
-STYLE = (".rdk-svg{font:11.5px system-ui,'Segoe UI','DejaVu "
-         "Sans',sans-serif;color:var(--rdk-ink,#1a2230);max-width:100%}"
-         ".rdk-svg text{fill:currentColor}.rdk-svg .q{opacity:.78}.rdk-svg .s{font-size:10.5px}.rdk-svg "
-         ".b{font-weight:600}"
-         ".rdk-svg .e{text-anchor:end}.rdk-svg .m{text-anchor:middle}.rdk-svg .g{stroke:currentColor;opacity:.16}"
-         ".rdk-svg .a{stroke:currentColor;opacity:.55}.rdk-svg .n{fill:none}.rdk-svg .l{fill:none;stroke-width:2}"
-         ".rdk-svg .c0{stroke:var(--rdk-c0,#0072b2)}.rdk-svg .c1{stroke:var(--rdk-c1,#c04a00)}"
-         ".rdk-svg .c2{stroke:var(--rdk-c2,#007a59)}.rdk-svg .c3{stroke:currentColor}.rdk-svg "
-         ".f0{fill:var(--rdk-c0,#0072b2)}"
-         ".rdk-svg .f1{fill:var(--rdk-c1,#c04a00)}.rdk-svg .f2{fill:var(--rdk-c2,#007a59)}.rdk-svg "
-         ".f3{fill:currentColor}"
-         ".rdk-svg .o{stroke:currentColor;stroke-width:1.6;fill:var(--rdk-part,#e6ebf2)}"
-         ".rdk-svg .soil{fill:var(--rdk-soil,#e4e0da)}.rdk-svg .bad{stroke:var(--rdk-red,#b42318);stroke-width:2.6}"
-         ".rdk-svg text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}:root.rdk-svg{background:#fff}")
-"""Styles of every SVG of the collection; a page may set the variables, as the explorer does for dark themes.
-
-A picture that stands alone, such as a notebook's output, knows nothing of its page and brings a white ground."""
+STYLE = """
+.rdk-svg{font:11.5px system-ui,'Segoe UI','DejaVu Sans',sans-serif;color:var(--rdk-ink,#1a2230);max-width:100%}
+.rdk-svg text{fill:currentColor}.rdk-svg .q{opacity:.78}.rdk-svg .s{font-size:10.5px}.rdk-svg .b{font-weight:600}
+.rdk-svg .e{text-anchor:end}.rdk-svg .m{text-anchor:middle}.rdk-svg .g{stroke:currentColor;opacity:.16}
+.rdk-svg .a{stroke:currentColor;opacity:.55}.rdk-svg .n{fill:none}.rdk-svg .l{fill:none;stroke-width:2}
+.rdk-svg .t{stroke-width:1.2}.rdk-svg .w{stroke-width:5}.rdk-svg .d *{vector-effect:non-scaling-stroke}
+.rdk-svg .c0{stroke:var(--rdk-c0,#0072b2)}.rdk-svg .c1{stroke:var(--rdk-c1,#c04a00)}.rdk-svg .c3{stroke:currentColor}
+.rdk-svg .c2{stroke:var(--rdk-c2,#007a59)}.rdk-svg .f0{fill:var(--rdk-c0,#0072b2)}.rdk-svg .f3{fill:currentColor}
+.rdk-svg .f1{fill:var(--rdk-c1,#c04a00)}.rdk-svg .f2{fill:var(--rdk-c2,#007a59)}
+.rdk-svg .h{paint-order:stroke;stroke:var(--rdk-card,#fff);stroke-width:3px;stroke-linejoin:round}
+.rdk-svg .o{stroke:currentColor;stroke-width:1.6;fill:var(--rdk-part,#e6ebf2)}
+.rdk-svg .soil{fill:var(--rdk-soil,#e4e0da)}.rdk-svg .bad{stroke:var(--rdk-red,#b42318);stroke-width:2.6}
+.rdk-svg text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}"""
+"""Styles of every SVG of the collection; a page may set the variables, as the explorer does for dark themes."""
 DENSITY_KG_M3 = 145.0                                    # of a rover's envelope: sizes the sketched body
 TRACK_RATIO = 0.9                                        # of track to wheelbase
 A4_M = 0.21, 0.297
 
 
+def element(tag, cls, inside="", **attributes):
+    """An SVG element of a class; `inside` stands as it is, _ in the name of an attribute is -."""
+    words = "".join([f' {name.replace("_", "-")}="{value:.5g}"' if isinstance(value, float)
+                     else f' {name.replace("_", "-")}="{value}"' for name, value in attributes.items()])
+    return f'<{tag} class="{cls}"{words}>{inside}</{tag}>'
+
+
+def text(x, y, words, cls=""):
+    """A text element."""
+    return element("text", cls, html.escape(str(words), quote=False), x=float(x), y=float(y))
+
+
 def svg(width, height, body, words, role="img"):
     """An SVG element of a size in pixels, with a sentence for those who do not see it."""
-    return (f'<svg class="rdk-svg" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" '
-            f'width="{width:g}" '
-            f'height="{height:g}" role="{role}" aria-label="{html.escape(words)}"><style>{STYLE}</style>{body}</svg>')
+    return element("svg", "rdk-svg", f"<style>{STYLE}</style>{body}", xmlns="http://www.w3.org/2000/svg",
+                   viewBox=f"0 0 {width:g} {height:g}", width=f"{width:g}", height=f"{height:g}", role=role,
+                   aria_label=html.escape(words))
 
 
-def rover_picture(design, performance=None, scenario=None, *, width=300, scale=None):
+def rover_picture(design, performance=None, scenario=None, *, width=300):
     """A single rover from the side and from above, as the text of an SVG element; show it by `IPython.display.SVG`.
 
     Wheels, grousers, wheelbase, array, sinkage, slope and tilt are to scale; the body is sketched from the mass. With
-    `performance` the wheels sink and what fails is marked; with `scenario` the rover stands on its slope, array tilted.
-    `scale` is in pixels for a metre, for rovers side by side; else the rover fills the width.
+    `performance` the wheels sink, with `scenario` the rover stands on its slope, with both what fails is marked.
     """
-    slope = 0.0 if scenario is None else float(scenario.slope_deg)
-    tilt = 0.0 if scenario is None else float(scenario.panel_tilt_deg)
-    obstacle = 0.0 if scenario is None else float(scenario.required_obstacle_height_m)
+    p, known = performance, performance is not None and scenario is not None
+    slope, tilt, obstacle = (0.0,) * 3 if scenario is None else map(float, (
+        scenario.slope_deg, scenario.panel_tilt_deg, scenario.required_obstacle_height_m))
     r, b, rib, base = design.wheel_radius_m, design.wheel_width_m, design.grouser_height_m, design.wheelbase_m
-    p = performance
     mass = 3 * design.chassis_mass_kg if p is None else p.total_mass_kg
-    sunk = r / 2 if p is not None and p.buried else 0.0 if p is None else max(p.sinkage_m, 0.0)
-    bad = failing(design, p, scenario)
+    sunk = 0.0 if p is None else r / 2 if p.buried else max(p.sinkage_m, 0.0)
+    bad = failing(design, p, scenario) if known else {}
+    tone = {part: " bad" * (part in bad) for part in ("wheels", "hubs", "array", "body", "obstacle")}
     side, depth = np.sqrt(design.solar_area_m2), TRACK_RATIO * base
     length, tall = max(base * 0.96, 0.2), float(np.clip(0.4 * np.cbrt(mass / DENSITY_KG_M3), 0.07, 0.45))
-    floor = r - sunk + 0.25 * r
+    floor = 1.25 * r - sunk
     roof = floor + tall
-    middle = roof + 0.03 + side / 2 * abs(np.sin(np.radians(tilt - slope)))  # of the array, clear of the roof
-
-    def turned(x, z, angle=slope):
-        cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
-        return x * cos - z * sin, x * sin + z * cos
-
-    reach = base / 2 + r + rib
-    corners = [turned(x, z) for x in (-reach - 0.03, reach + 0.03) for z in (-sunk - rib - 0.02, 2 * r, roof)]
-    lean = np.radians(tilt)                              # from the horizontal of the world, not of the slope
-    cx, cz = turned(0.0, middle)
-    tips = [(cx + way * side / 2 * np.cos(lean), cz + way * side / 2 * np.sin(lean)) for way in (-1, 1)]
+    sin, cos, lean = np.sin(np.radians(slope)), np.cos(np.radians(slope)), np.radians(tilt)
+    middle, reach = roof + 0.03 + side / 2 * np.sin(lean), base / 2 + r + rib        # height of the array's centre
+    # sizes in the world, whose level the array's tilt refers to; the rest is drawn on the slope
+    corners = [(x * cos - z * sin, x * sin + z * cos) for x in (-reach - 0.03, reach + 0.03)
+               for z in (-sunk - rib - 0.02, 2 * r, roof)]
+    tips = [(-middle * sin + way * side / 2 * np.cos(lean), middle * cos + way * side / 2 * np.sin(lean))
+            for way in (-1, 1)]
     xs, zs = np.array(corners + tips).T
     above = max(depth + b, side * np.cos(lean), 0.3)
-    scale = scale or min((width - 66) / np.ptp(xs), 210 / np.ptp(zs), 130 / above)
-    left = (width - 46 - scale * np.ptp(xs)) / 2 - scale * xs.min()
-    level = 24 + scale * zs.max()
+    scale = float(min((width - 66) / np.ptp(xs), 210 / np.ptp(zs), 130 / above))
+    left, level = (width - 46 - scale * np.ptp(xs)) / 2 - scale * xs.min(), 24 + scale * zs.max()
     height = level - scale * zs.min() + 8
-    tone = {part: " bad" if part in bad else "" for part in ("wheels", "hubs", "array", "body", "obstacle")}
 
-    def flat(x, z):                                      # before the slope turns the group
-        return f"{scale * x:.1f} {-scale * z:.1f}"
+    def box(cls, x, z, wide, high, inside="", **more):
+        """A rectangle in metres, from its lower left corner."""
+        return element("rect", cls, inside, x=float(x), y=float(z), width=float(wide), height=float(high), **more)
 
     wheels = np.linspace(-base / 2, base / 2, 2 if design.wheel_count == 4 else 3)
-    angles = 2 * np.pi * np.arange(int(design.grouser_count)) / max(int(design.grouser_count), 1)
-    parts = [f'<path class="soil" d="M{flat(-3, 0)}L{flat(3, 0)}L{flat(3, -2)}L{flat(-3, -2)}Z"/>']
+    parts = [box("soil", -3, -2, 6, 2)]
     if obstacle:
-        parts.append(f'<rect class="soil a{tone["obstacle"]}" x="{scale * (reach + 0.01):.1f}" '
-                     f'y="{-scale * obstacle:.1f}" '
-                     f'width="{scale * 0.12:.1f}" height="{scale * obstacle:.1f}"/>')
+        parts.append(box("soil a" + tone["obstacle"], reach + 0.01, 0, 0.12, obstacle))
     if design.wheel_count == 6:
-        parts.append('<path class="n c3" stroke-width="2" '
-                     f'd="M{flat(wheels[0], r - sunk)}L{flat(base / 8, floor + tall / 3)}'
-                     f'L{flat(wheels[2], r - sunk)}M{flat(base / 8, floor + tall / 3)}L{flat(wheels[1], r - sunk)}"/>')
-    for x in wheels:
-        ribs = "".join(f"M{flat(x + r * np.sin(a), r - sunk - r * np.cos(a))}"
-                       f"L{flat(x + (r + rib) * np.sin(a), r - sunk - (r + rib) * np.cos(a))}"
-                       for a in angles) if rib else ""
-        parts.append(f'<circle class="o{tone["wheels"]}" cx="{scale * x:.1f}" cy="{-scale * (r - sunk):.1f}" '
-                     f'r="{scale * r:.1f}"/><path class="c3" stroke-width="1.6" d="{ribs}"/>'
-                     f'<circle class="f3{tone["hubs"]}" cx="{scale * x:.1f}" cy="{-scale * (r - sunk):.1f}" '
-                     f'r="{4.5 if tone["hubs"] else 3}"/>')
-    parts.append(f'<rect class="o{tone["body"]}" x="{-scale * length / 2:.1f}" y="{-scale * roof:.1f}" rx="4" '
-                 f'width="{scale * length:.1f}" height="{scale * tall:.1f}"/>')
+        hub, pivot = r - sunk, floor + tall / 3
+        parts.append(element("path", "l c3", d=f"M{-base / 2} {hub}L{base / 8} {pivot}L{base / 2} {hub}"
+                                               f"M{base / 8} {pivot}L0 {hub}"))
+    parts += [_wheel(design, x, r - sunk, (4.5 if tone["hubs"] else 3.0) / scale, tone) for x in wheels.tolist()]
+    parts.append(box("o" + tone["body"], -length / 2, floor, length, tall, rx=4 / scale))
     if p is not None:                                    # boxes as large as their share of the mass
-        for k, (name, kg, at) in enumerate((("battery", p.mass.battery_kg, -0.46),
-                                            ("payload", p.mass.payload_kg, 0.06))):
-            share = float(np.clip(np.sqrt(kg / mass), 0.12, 0.7))
-            parts.append(f'<rect class="f{2 * k}" opacity=".75" x="{scale * length * at:.1f}" '
-                         f'y="{-scale * (floor + 0.08 * tall + 0.8 * tall * share):.1f}" '
-                         f'width="{scale * length * 0.4:.1f}" '
-                         f'height="{scale * 0.8 * tall * share * (kg > 0):.1f}"><title>{name} {kg:.2f} kg</title>'
-                         "</rect>")
-    parts.append(f'<path class="n c3" stroke-width="1.5" d="M{flat(0, roof)}L{flat(0, middle)}"/>')
-    scene = f'<g transform="translate({left:.1f} {level:.1f}) rotate({-slope:.2f})">{"".join(parts)}</g>'
-    (x0, z0), (x1, z1) = tips
-    scene += (f'<line class="c0{tone["array"]}" stroke-width="5" x1="{left + scale * x0:.1f}" '
-              f'y1="{level - scale * z0:.1f}" '
-              f'x2="{left + scale * x1:.1f}" y2="{level - scale * z1:.1f}"/>')
-    sheet = (f'<rect class="n a" x="{width - 14 - scale * A4_M[0]:.1f}" y="26" width="{scale * A4_M[0]:.1f}" '
-             f'height="{scale * A4_M[1]:.1f}"/><text class="q s e" x="{width - 14:.0f}" '
-             f'y="{40 + scale * A4_M[1]:.0f}">A4</text>')
-    top = height + 16
-    centre, across = top + 14 + scale * above / 2, width / 2
-    plan = "".join(f'<rect class="o{tone["wheels"]}" x="{across + scale * (x - r):.1f}" width="{scale * 2 * r:.1f}" '
-                   f'y="{centre + way * scale * depth / 2 - scale * b / 2:.1f}" height="{scale * b:.1f}" rx="2"/>'
-                   for x in wheels for way in (-1, 1))
-    plan += (f'<rect class="o{tone["body"]}" x="{across - scale * length / 2:.1f}" '
-             f'y="{centre - scale * 0.3 * depth:.1f}" '
-             f'width="{scale * length:.1f}" height="{scale * 0.6 * depth:.1f}" rx="4"/>'
-             f'<rect class="f0" opacity=".22" x="{across - scale * side / 2 * np.cos(lean):.1f}" '
-             f'width="{scale * side * np.cos(lean):.1f}" y="{centre - scale * side / 2:.1f}" '
-             f'height="{scale * side:.1f}"/>'
-             f'<text class="m s" x="{across:.0f}" y="{centre + 4:.0f}">array {design.solar_area_m2:.3g} m²</text>')
+        for cls, name, kg, at in (("f0", "battery", p.mass.battery_kg, -0.46), ("f2", "payload", p.mass.payload_kg,
+                                                                                0.06)):
+            high = 0.8 * tall * float(np.clip(np.sqrt(kg / mass), 0.12, 0.7)) * (kg > 0)
+            parts.append(box(cls, length * at, floor + 0.08 * tall, length * 0.4, high,
+                             f"<title>{name} {kg:.2f} kg</title>", opacity=0.75))
+    parts.append(element("path", "c3", d=f"M0 {roof}V{middle}"))
+    scene = element("g", "d", "".join(parts), transform=f"rotate({slope})") + element(
+        "path", "l w c0" + tone["array"], d="M{} {}L{} {}".format(*tips[0], *tips[1]))
+    scene = element("g", "d", scene, transform=f"translate({left:.1f} {level:.1f}) scale({scale:.2f} {-scale:.2f})")
+    scene = element("svg", "", scene, width=width, height=float(height))     # cuts off the soil beyond
+    sheet = element("g", "d", box("n a", -A4_M[0], 0, *A4_M),
+                    transform=f"translate({width - 14} 26) scale({scale:.2f})")
+    top, wide = height + 16, side * np.cos(lean)
+    plan = "".join(box("o" + tone["wheels"], x - r, way * depth / 2 - b / 2, 2 * r, b) for x in wheels
+                   for way in (-1, 1))
+    plan += (box("o" + tone["body"], -length / 2, -0.3 * depth, length, 0.6 * depth, rx=4 / scale)
+             + box("f0", -wide / 2, -side / 2, wide, side, opacity=0.22))
+    centre = top + 14 + scale * max(above, side) / 2
+    plan = element("g", "d", plan, transform=f"translate({width / 2} {centre:.1f}) scale({scale:.2f})")
     end = max(centre + scale * max(above, side) / 2, top + 20) + 18
-    said = "; ".join(bad.values())
+    notes = [text(4, 14, f"side, on {slope:g}°", "q s b"), text(width - 14, 40 + scale * A4_M[1], "A4", "q s e"),
+             text(4, top + 4, f"top, wheelbase {base:g} m", "q s b"),
+             text(width / 2, centre + 4, f"array {design.solar_area_m2:.3g} m²", "m s"),
+             *(text(width / 2, end + 13 * k, said, "bad s m") for k, said in enumerate(bad.values()))]
     words = (f"Rover to scale: {design.wheel_count} wheels of {1000 * r:.0f} mm radius and {1000 * b:.0f} mm width, "
-             "wheelbase "
-             f"{base:.3g} m, on a slope of {slope:g} degrees, array of {design.solar_area_m2:.3g} m2 tilted {tilt:g} "
-             "degrees"
-             + ("" if p is None or p.buried else f", wheels {1000 * sunk:.0f} mm deep")
-             + (f". Marked: {said}" if said else "")
-             + ".")
-    notes = (f'<text class="q s b" x="4" y="14">side, on {slope:g}°</text><text class="q s b" x="4" '
-             f'y="{top + 4:.0f}">top, wheelbase {base:.3g} m</text>'
-             + (f'<text class="bad s e" x="{width - 4}" y="{end:.0f}">{html.escape(said)}</text>' if said else ""))
-    scene = f'<svg width="{width}" height="{height:.0f}">{scene}</svg>'       # cuts off the soil beyond
-    return svg(width, round(end + 6), scene + sheet + plan + notes, words)
+             f"wheelbase {base:g} m, on a slope of {slope:g} degrees, array of {design.solar_area_m2:.3g} m2 tilted "
+             f"{tilt:g} degrees" + ("" if p is None or p.buried else f", wheels {1000 * sunk:.0f} mm deep")
+             + (f". Marked: {'; '.join(bad.values())}" if bad else "") + ".")
+    return svg(width, round(end + 13 * max(len(bad) - 1, 0) + 6), scene + sheet + plan + "".join(notes), words)
 
 
-def failing(design, performance, scenario):
-    """Parts that fail, each with a few words: "wheels", "hubs", "array", "body", "obstacle"."""
-    p, bad = performance, {}
-    if p is None:
-        return bad
-    if p.buried:
-        bad["wheels"] = "wheels buried"
-    elif p.stalled and p.wheel_torque_nm > design.peak_wheel_torque_nm:
-        bad["hubs"] = "hubs too weak"
-    elif p.stalled:
-        bad["wheels"] = "wheels slip"
-    if scenario is not None and p.average_solar_power_w <= design.avionics_power_w + scenario.payload_power_w:
-        bad["array"] = "array too small"
-    if not p.thermal_survival:
-        bad["body"] = "too hot at noon" if p.cold_survival else "too cold at night"
-    if scenario is not None and p.obstacle_capability_m < scenario.required_obstacle_height_m:
-        bad["obstacle"] = "obstacle too high"
-    return bad
+def _wheel(design, x, z, hub, tone):
+    """A wheel with its grousers and its hub, in metres, height upwards."""
+    r, rib, count = design.wheel_radius_m, design.grouser_height_m, int(design.grouser_count)
+    angles = 2 * np.pi * np.arange(count) / max(count, 1)
+    ribs = "".join(f"M{x + r * sin:.4f} {z - r * cos:.4f}l{rib * sin:.4f} {-rib * cos:.4f}"
+                   for sin, cos in zip(np.sin(angles).tolist(), np.cos(angles).tolist()))
+    return (element("circle", "o" + tone["wheels"], cx=x, cy=z, r=r) + element("path", "c3", d=ribs)
+            + element("circle", "f3" + tone["hubs"], cx=x, cy=z, r=hub))
 
 
-def wheel_picture(design, performance, scenario, *, model=None, width=300, height=260):
+def wheel_picture(design, performance, scenario, *, model=Model(), width=300, height=260):
     """The wheel of a single rover in its soil at the slip balance, stresses as arrows, as an SVG element's text."""
-    model = Model() if model is None else model
-    r, rib, p = design.wheel_radius_m, design.grouser_height_m, performance
-    scale = min(width * 0.84, height * 1.1) / (2 * (r + rib))
-    x, ground = width / 2, height * 0.62
-    sunk = r if p.buried else p.sinkage_m
-    y = ground - scale * (r - sunk)
-    angles = 2 * np.pi * np.arange(int(design.grouser_count)) / max(int(design.grouser_count), 1)
-    ribs = "".join(f"M{x + scale * r * np.sin(a):.1f} {y + scale * r * np.cos(a):.1f}"
-                   f"L{x + scale * (r + rib) * np.sin(a):.1f} {y + scale * (r + rib) * np.cos(a):.1f}" for a in angles)
-    body = (f'<rect class="soil" y="{ground:.1f}" width="{width}" height="{height - ground:.1f}"/>'
-            f'<circle class="o" cx="{x}" cy="{y:.1f}" r="{scale * r:.1f}"/><path class="c3" stroke-width="1.6" '
-            f'd="{ribs}"/>'
-            f'<circle class="f3" cx="{x}" cy="{y:.1f}" r="3"/>')
+    r, p, ground = design.wheel_radius_m, performance, height * 0.66
+    scale = min(width * 0.84, height * 0.66) / (2 * (r + design.grouser_height_m))
+    z = r - (r if p.buried else p.sinkage_m)
+    body = _wheel(design, 0.0, z, 3 / scale, {"wheels": "", "hubs": ""})
     if p.buried:
-        return svg(width, height, body + f'<text class="m bad" x="{x}" y="18">buried: no contact carries the '
-                   'load</text>',
-                   "The wheel is buried: no contact carries the load.")
-    entry, angle, normal, shear = contact(design, performance, scenario, model, 9)
-    longest = 0.3 * height / max(np.abs(normal).max(), np.abs(shear).max(), 1e-9)
-    for a, n, t in zip(angle, normal, shear):            # pressed into the soil; shear drags it backwards
-        px, py = x + scale * r * np.sin(a), y + scale * r * np.cos(a)
-        for cls, dx, dy in (("c0", np.sin(a) * n, np.cos(a) * n), ("c1", -np.cos(a) * t, np.sin(a) * t)):
-            body += f'<path class="l {cls}" d="M{px:.1f} {py:.1f}l{longest * dx:.1f} {longest * dy:.1f}"/>'
-    body += (f'<text class="s" x="6" y="{height - 20}"><tspan class="f0 b">normal</tspan> and <tspan class="f1 '
-             'b">shear</tspan> '
-             f'stress</text><text class="s q" x="6" y="{height - 6}">sinkage {1000 * p.sinkage_m:.1f} mm, slip '
-             f'{p.slip:.2f}'
-             '</text>')
-    return svg(width, height, body, f"Wheel of {1000 * r:.0f} mm radius, {1000 * p.sinkage_m:.1f} mm deep, in contact "
-               "over "
-               f"{np.degrees(entry):.0f} degrees; normal stress up to {normal.max():.1f} kPa, shear to "
-               f"{shear.max():.1f} kPa.")
+        notes, words = text(width / 2, 18, "buried: no contact carries the load", "m bad"), ""
+        words = "The wheel is buried: no contact carries the load."
+    else:
+        entry, angle, normal, shear = contact(design, p, scenario, model, 9)
+        longest = (0.34 * height - 34) / scale / max(np.abs(normal).max(), np.abs(shear).max(), 1e-9)
+        sin, cos = np.sin(angle), np.cos(angle)          # pressed into the soil; shear drags it backwards
+        for cls, dx, dz in (("l c0", sin * normal, -cos * normal), ("l c1", -cos * shear, -sin * shear)):
+            arrows = np.array([r * sin, z - r * cos, longest * dx, longest * dz]).T.tolist()
+            body += element("path", cls, d="".join("M{:.4f} {:.4f}l{:.4f} {:.4f}".format(*arrow) for arrow in arrows))
+        notes = (element("text", "s", '<tspan class="f0 b">normal</tspan> stress into the soil, <tspan '
+                         'class="f1 b">shear</tspan> along it', x=6, y=height - 20)
+                 + text(6, height - 6, f"sinkage {1000 * p.sinkage_m:.1f} mm, slip {p.slip:.2f}", "s q"))
+        words = (f"Wheel of {1000 * r:.0f} mm radius, {1000 * p.sinkage_m:.1f} mm deep, in contact over "
+                 f"{np.degrees(entry):.0f} degrees; normal stress up to {normal.max():.1f} kPa, shear to "
+                 f"{shear.max():.1f} kPa.")
+    soil = element("rect", "soil", x=0, y=ground, width=width, height=height - ground)
+    wheel = element("g", "d", body, transform=f"translate({width / 2} {ground:.1f}) scale({scale:.2f} {-scale:.2f})")
+    return svg(width, height, soil + wheel + notes, words)
 
 
 def contact(design, performance, scenario, model, points):

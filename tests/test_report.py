@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import rdk
-from rdk import catalog
+from rdk import catalog, pictures, sky
 from exercises.capstone import SWIRL
 from rdk.design import Problem
 from rdk.report import Requirement, joint_odds, report, requirements, write
@@ -246,6 +246,18 @@ def test_it_prints_on_one_page_of_a4_with_a_full_page_of_notes(tmp_path):
     assert len(re.findall(rb"/Type\s*/Page\b", pdf)) == 1
 
 
+@pytest.mark.parametrize("changed, words", [
+    (dict(design=rdk.random_designs(3, seed=1)), "design must be a single one"),
+    (dict(baseline=rdk.random_designs(3, seed=1)), "baseline must be a single one"),
+    (dict(scenario=replace(MARE, slope_deg=[1.0, 2.0])), "scenario must be a single one"),
+    (dict(model=rdk.Model(shear_scale=[0.9, 1.0])), "model must be a single one")])
+def test_python_is_written_for_single_records_only(changed, words):
+    records = {"design": RASHID, "scenario": MARE, "model": rdk.Model(), "baseline": RASHID} | changed
+    baseline = records.pop("baseline")
+    with pytest.raises(ValueError, match=words):
+        rdk.explain.as_python(*records.values(), "x", baseline=baseline)
+
+
 @pytest.mark.parametrize("call", [
     lambda: rdk.write_report("Rashid-1", MARE, "x.html"), lambda: report("Rashid-1", MARE, "x"),
     lambda: rdk.explain.as_python("Rashid-1", MARE, rdk.Model()), lambda: rdk.Explorer(3)], ids=range(4))
@@ -257,3 +269,71 @@ def test_what_is_no_rover_is_refused_with_how_to_get_one(call):
 def test_a_folder_in_place_of_a_file_is_refused(tmp_path):
     with pytest.raises(IsADirectoryError, match="path must name a file"):
         rdk.write_report(RASHID, MARE, tmp_path, draws=20)
+
+
+# ---- pictures ---------------------------------------------------------------------------------------------------
+
+def shaded(picture):
+    """Share of the width of a log's panels that is shaded."""
+    found = [float(width) for width in re.findall(r'<rect class="f3" x="[^"]*" y="[^"]*" width="([^"]*)"', picture)]
+    return sum(found) / 3 / (pictures.SIZE[0] - 106)     # three panels, 44 pixels on their left, 62 on their right
+
+
+def test_the_log_shades_the_hours_in_which_hills_hide_the_sun():
+    site, start = catalog.skyline_sites()["shackleton_rim"], "2026-11-26T12:00"
+    hills = catalog.at_latitude(MARE, site["latitude_deg"]).replace(
+        skyline=rdk.skyline("shackleton_rim"), longitude_deg=site["longitude_deg"], start_utc=start,
+        duration_earth_days=28.0)
+    result = rdk.evaluate(RASHID, hills)
+    where = sky.sun_position(hills.latitude_deg, hills.longitude_deg, sky.julian_date(start) + result.log.time_h / 24)
+    lit = sky.lit_fraction(*where, hills.skyline)
+    np.testing.assert_allclose(result.log.lit_fraction, lit, atol=1e-9)      # the same formulas in another order
+    hidden = (lit < 0.5) & (result.log.sun_elevation_deg > 0)
+    assert hidden.any() and (result.log.solar_w[lit == 0] == 0).all()
+    picture = pictures.log(result, hills)
+    np.testing.assert_allclose(shaded(picture), np.mean(lit < 0.5), atol=1e-3)         # five digits are written
+    assert "shaded: sun hidden" in picture and f"Sun hidden in {100 * np.mean(lit < 0.5):.0f} %" in picture
+
+
+def test_the_log_of_a_level_horizon_shades_the_night_and_says_so():
+    polar = rdk.evaluate(RASHID, rdk.scenario("polar_prospecting"))
+    picture = pictures.log(polar, rdk.scenario("polar_prospecting"))
+    np.testing.assert_allclose(shaded(picture), np.mean(polar.log.sun_elevation_deg <= 0), atol=1e-3)
+    assert 0.3 < shaded(picture) < 0.6 and "shaded: night" in picture
+    day = pictures.log(rdk.evaluate(RASHID, MARE.replace(duration_earth_days=7.0)), MARE)
+    assert shaded(day) == 0 and "shaded" not in day
+
+
+def test_each_dot_of_a_front_tells_its_design_and_odds_have_a_scale_from_0_to_1():
+    designs = rdk.random_designs(5, seed=2)
+    found = rdk.evaluate(designs, MARE)
+    odds = np.linspace(0.4, 0.6, 5)
+    picture = pictures.front(found.total_mass_kg, found.range_km, odds, ("total_mass_kg", "range_km", "odds"),
+                             (20, 30, 0.5), designs=designs)
+    titles = re.findall(r"<title>([^<]*)</title>", picture)
+    for i, told in enumerate(titles):
+        assert f"mass {found.total_mass_kg[i]:.4g} kg" in told and f"odds of the demands {odds[i]:.4g}" in told
+        assert all(f"{v.label} {getattr(designs, name)[i]:.4g}" in told for name, v in rdk.DESIGN_SPACE.items())
+    assert len(titles) == 5 and f'fill="{pictures.shade(0.4)}"' in picture and ">0.2<" in picture and ">0.8<" in picture
+
+
+def test_names_cover_neither_marks_nor_each_other():
+    axes = pictures.Axes((50, 20, 550, 300), (0, 1), (0, 1))
+    points = np.random.default_rng(3).random((12, 2)) * 0.9
+    for point in points:
+        axes.mark(*point)
+    for i, point in enumerate(points):
+        axes.name(*point, f"rover {i}")
+    boxes = np.array(axes.taken)
+    assert len(boxes) == 24 and (boxes[:, 0] >= 45).all()
+    for a in boxes[12:]:
+        over = (boxes[:, 0] < a[2]) & (boxes[:, 2] > a[0]) & (boxes[:, 1] < a[3]) & (boxes[:, 3] > a[1])
+        assert over.sum() == 1                           # itself
+
+
+def test_labels_split_unit_from_words():
+    for name, words in {"range_km": ("range", "km"), "cruise_speed_m_s": ("cruise speed", "m/s"), "slip": ("slip", ""),
+                        "wheel_torque_nm": ("wheel torque", "N m"), "minimum_soc": ("lowest charge", ""),
+                        "ground_pressure_kpa": ("ground pressure", "kPa"), "unserved_h": ("unserved", "h")}.items():
+        assert rdk.explain.label(name) == words
+    assert rdk.explain.label("cohesive_modulus_kn_m_n1")[0] == "cohesive modulus"

@@ -155,10 +155,8 @@ def explained(design, reference, name, scenario, model, metric, size):
     """The picture of what each variable contributes to the difference from a reference."""
     found = attribution(design, reference, scenario, model=model)
     if metric not in found.contributions:
-        said = (f"{label(metric)[0]} has no value in some mixture of the two designs (a buried wheel), so that its "
-                "difference "
-                "cannot be shared out. Choose another metric.")
-        return pictures.svg(*size, pictures.text(14, 40, said[:90]) + pictures.text(14, 58, said[90:]), said)
+        return pictures.message(size, f"{label(metric)[0]} has no value in some mixture of the two designs (a buried "
+                                "wheel), so that its difference cannot be shared out. Choose another metric.")
     names = [label(n)[0] if n in NUMBERS else "wheels" for n in DESIGN_SPACE]
     return pictures.why(metric, names, found.contributions[metric], float(getattr(found.baseline_performance, metric)),
                         float(getattr(found.performance, metric)), name, size)

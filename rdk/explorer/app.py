@@ -304,7 +304,7 @@ class Explorer(State):
         faded = ~answers.meets(front.performance, scenario.problem.constraints)
         words = f"{'Live front' if now['live'] else 'Front'} of {where}: {len(front)} designs"
         return pictures.front(*columns, names, [float(getattr(result, name)) for name in names], size, picked, faded,
-                              words, stale or front.message, self._ghosts(scenario, model))
+                              words, stale or front.message, self._ghosts(scenario, model), front.designs)
 
     def _show_tray(self, scenario, model, result):
         pins = []
