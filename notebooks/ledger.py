@@ -14,6 +14,7 @@ from functools import cached_property, partial
 import numpy as np
 import pandas as pd
 
+import chance
 from rdk import catalog, rediscovery, rules, validation
 from rdk._fields import check
 from rdk.design import Model
@@ -109,8 +110,7 @@ class Searches:
     @cached_property
     def crossover(self):
         """Where six wheels come in. Heights end at 0.12 m, which no wheel of the search climbs on a rigid chassis."""
-        heights = [height for height in rules.OBSTACLE_HEIGHTS_M if 0 < height <= 0.12]
-        taller = self._fronts(obstacle_heights_m=heights)
+        taller = self._fronts(obstacle_heights_m=(0.02, 0.04, 0.06, 0.08, 0.10, 0.12))
         return rules.crossover(rules.front_statistics([*self.canonical.values(), *taller.values()]))
 
     @cached_property
@@ -137,7 +137,7 @@ class Searches:
 
     @cached_property
     def chance(self):
-        return rediscovery.baselines(self.found, count=160 * self.size["population"], seed=self.seed_offset)
+        return chance.baselines(self.found, count=160 * self.size["population"], seed=self.seed_offset)
 
     @cached_property
     def distances(self):

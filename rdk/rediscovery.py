@@ -2,18 +2,17 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import pandas as pd
 
 from . import catalog
 from ._fields import check, unknown
-from .design import DESIGN_SPACE, Design, Model
-from .mission import evaluate, mass_of
-from .rules import place, searched
-from .sampling import random_designs
-from .tradespace import beaten, minimised
+from .design import DESIGN_SPACE, Design, Scenario
+from .mission import Performance, evaluate
+from .rules import place
+from .tradespace import beaten, minimised, pareto_front
 
 REDISCOVERED = {"Tenacious": "mare_micro", "CADRE-unit": "polar_micro", "Rashid-1": "mare_micro",
                 "Pragyan": "polar_micro", "MoonRanger": "polar_micro", "Yutu-2": "mare_micro"}
@@ -31,17 +30,17 @@ def unit_cube(designs: Design) -> np.ndarray:
 class Target:
     """A published rover on its class-generic mission with its own payload, and its search's mass ceiling."""
     name: str
-    scenario: object
+    scenario: Scenario
     design: Design
-    performance: object
+    performance: Performance
     ceiling_kg: float
 
     @classmethod
     def of(cls, name):
-        if name not in REDISCOVERED:
+        if name not in list(REDISCOVERED):
             raise unknown("the check has no rover", name, list(REDISCOVERED))
         design, payload = catalog.rover(name), float(catalog.rover_row(name)["payload_mass_kg"])
-        scenario = dataclasses.replace(catalog.scenario(REDISCOVERED[name]), payload_mass_kg=payload)
+        scenario = catalog.scenario(REDISCOVERED[name]).replace(payload_mass_kg=payload)
         performance = evaluate(design, scenario)
         return cls(name, scenario, design, performance, 1.10 * performance.total_mass_kg)
 
@@ -53,8 +52,8 @@ class Target:
         return np.linalg.norm(unit_cube(designs) - unit_cube(self.design), axis=1)
 
 
-def rediscover(rovers: Iterable[str] = tuple(REDISCOVERED), *, population: int = 60, generations: Iterable[int] = (16,),
-               seeds: Iterable[int] = range(5), executor=None) -> pd.DataFrame:
+def rediscover(rovers: Iterable[str] = tuple(REDISCOVERED), *, population: int = 60, generations: Sequence[int] = (16,),
+               seeds: Sequence[int] = range(5), executor=None) -> pd.DataFrame:
     """Distance of published rovers to the fronts of their missions, under a ceiling of 1.10 times their mass.
 
     One search a seed, run in parallel by an `executor` of concurrent.futures with the same result; the fronts are
@@ -65,12 +64,30 @@ def rediscover(rovers: Iterable[str] = tuple(REDISCOVERED), *, population: int =
     (to the nearest of the worst single search), dominated (some front design is no worse in range, mass and slope
     capability and better in one), and `nearest`, the design.
     """
-    targets, seeds = [Target.of(name) for name in rovers], list(seeds)
-    searches = searched([(target.scenario, dict(population=population, seed=seed, constraints=target.constraints))
-                         for target in targets for seed in seeds], generations, executor)
+    targets = [Target.of(name) for name in ([rovers] if isinstance(rovers, str) else rovers)]
+    generations, seeds = (np.unique(check(name, values, low, whole=True)).tolist() for name, values, low in (
+        ("generations", generations, 1), ("seeds", seeds, 0)))
+    for name, values in dict(rovers=targets, generations=generations, seeds=seeds).items():
+        if not values:
+            raise ValueError(f"{name} must not be empty")
+    jobs = [(target.scenario, generations, dict(population=population, seed=seed, constraints=target.constraints))
+            for target in targets for seed in seeds]
+    searches = list((map if executor is None else executor.map)(_search, jobs))
     return pd.DataFrame([
         _found(target, fronts) for i, target in enumerate(targets)
         for fronts in zip(*searches[i * len(seeds):(i + 1) * len(seeds)])])
+
+
+def _search(job):
+    """The fronts of one search at generations in rising order; runs in any process."""
+    (scenario, wanted, options), fronts = job, []
+
+    def look(progress):
+        if progress.generation in wanted:
+            fronts.append(progress.front())
+
+    pareto_front(scenario, generations=wanted[-1], on_generation=look, warn=False, **options)
+    return fronts
 
 
 def _found(target, fronts):
@@ -90,73 +107,3 @@ def _found(target, fronts):
                     dominated=beaten(own, theirs).item(),
                     nearest=best[int(np.argmin(target.distances(best)))])
     return row
-
-
-def baselines(found: pd.DataFrame, *, count: int = 20000, seed: int = 0) -> pd.DataFrame:
-    """What distances chance gives, for the rovers of a rediscovery check: one row of `rediscover` a rover.
-
-    Its number of front designs sets how many chances chance gets, of `count` random designs. One row a rover: rover,
-    random_pair (mean distance of two random points), feasible_fraction (share of random designs that are feasible on
-    its mission), feasible_pair (mean distance of two of those), centroid (distance of the rover to their centroid),
-    nearest_feasible (mean distance of the nearest of as many random feasible designs as the front has), nearest_capped
-    and nearest_capped_low (the same under the rover's mass ceiling, and its 5 % quantile), capped_designs (how many
-    random designs met it).
-    """
-    random, rows = np.random.default_rng(seed), []
-    count = int(check("count", count, 100, whole=True, scalar=True))
-    points = random_designs(count, seed=seed)
-    cube = unit_cube(points)
-    for row in found.itertuples():
-        target = Target.of(row.rover)
-        feasible = evaluate(points, target.scenario).feasible
-        capped = lighter_than(target, count, seed + 1)
-        capped = capped[evaluate(capped, target.scenario).feasible]
-        chances = max(row.front_designs, 1)
-        near = {name: _nearest(target.distances(designs), chances, random) for name, designs in
-                dict(feasible=points[feasible], capped=capped).items()}
-        rows.append(dict(
-            rover=row.rover, random_pair=_pair(cube, random), feasible_fraction=feasible.mean(),
-            feasible_pair=_pair(cube[feasible], random),
-            centroid=np.linalg.norm(cube[feasible].mean(0) - unit_cube(target.design)[0]),
-            nearest_feasible=near["feasible"].mean(), nearest_capped=near["capped"].mean(),
-            nearest_capped_low=np.quantile(near["capped"], 0.05), capped_designs=len(capped)))
-    return pd.DataFrame(rows)
-
-
-def _pair(cube, random, pairs=200_000):
-    """Mean distance of two different random points of a set."""
-    i = random.integers(len(cube), size=pairs)
-    j = (i + random.integers(1, len(cube), size=pairs)) % len(cube)
-    return np.linalg.norm(cube[i] - cube[j], axis=1).mean()
-
-
-def _nearest(distances, chances, random, trials=2000):
-    """Distance of the nearest of `chances` random picks, in many trials."""
-    return distances[random.integers(len(distances), size=(trials, chances))].min(1)
-
-
-def lighter_than(target: Target, count: int, seed: int) -> Design:
-    """Uniform random designs below a rover's mass ceiling, in the box of what each variable may reach alone.
-
-    Total mass rises with every variable: what is light enough lies in that box, so it is uniform in the whole space.
-    """
-    low = {name: v.low for name, v in DESIGN_SPACE.items()}
-    bounds = {}
-    for name in ("wheel_radius_m", "wheel_width_m", "chassis_mass_kg", "solar_area_m2", "battery_capacity_wh",
-                 "avionics_power_w", "peak_wheel_torque_nm"):
-        values = np.linspace(DESIGN_SPACE[name].low, DESIGN_SPACE[name].high, 1001)
-        mass = mass_of(Design(**low | {name: values}), target.scenario, Model()).total_kg
-        light = np.flatnonzero(mass <= target.ceiling_kg)
-        highest = values[min(light[-1] + 1, len(values) - 1)] if light.size else low[name]
-        bounds[name] = (DESIGN_SPACE[name].low, float(highest))
-    six = mass_of(Design(**low | {"wheel_count": 6}), target.scenario, Model()).total_kg <= target.ceiling_kg
-    bounds["wheel_count"] = (4, 6 if six else 4)
-    found, total = [], 0
-    for block in range(50):                              # few designs are as light as the lightest rovers
-        designs = random_designs(100_000, (seed, block), bounds)
-        found.append(designs[mass_of(designs, target.scenario, Model()).total_kg <= target.ceiling_kg])
-        total += len(found[-1])
-        if total >= count:
-            break
-    joined = {name: np.concatenate([getattr(designs, name) for designs in found]) for name in DESIGN_SPACE}
-    return Design(**joined)[:count]

@@ -60,9 +60,9 @@ def rocks_per_m2(diameter_m: Real, area_fraction: Real) -> Real:
     N(> D) is the integral of 4 k q exp(-q x) / (pi x^2) from D on.
     """
     from scipy.special import exp1
-    k, diameter = np.asarray(area_fraction, float), np.asarray(diameter_m, float)
+    k, diameter = check("area_fraction", area_fraction, 0, 1), check("diameter_m", diameter_m, above=0)
     with np.errstate(all="ignore"):
-        q = 1.79 + 0.152 / k
+        q = 1.79 + np.divide(0.152, k)
         return np.where(k > 0, 4 * k * q / np.pi * (np.exp(-q * diameter) / diameter - q * exp1(q * diameter)), 0.0)[()]
 
 
@@ -73,8 +73,8 @@ def detour_factor(obstacle_m: Real, width_m: Real, area_fraction: Real) -> Real:
     they are wide. A metre of its swath meets those whose middle lies within its width and their diameter, and passing
     one costs about that length.
     """
-    diameter = 2 * np.asarray(obstacle_m)
-    return 1 + rocks_per_m2(diameter, area_fraction) * (width_m + diameter) ** 2
+    diameter = 2 * check("obstacle_m", obstacle_m, above=0)
+    return 1 + rocks_per_m2(diameter, area_fraction) * (check("width_m", width_m, above=0) + diameter) ** 2
 
 
 # ---- the cheapest way ------------------------------------------------------------------------------------------
@@ -112,24 +112,25 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
     height, (rows, columns) = terrain.height_m, terrain.height_m.shape
-    tilt_limit, edge_limit = (check(name, value, 0, 90, scalar=True) for name, value in (
-        ("tilt_limit_deg", tilt_limit_deg), ("edge_limit_deg", edge_limit_deg)))
-    detour, ends = check("detour", detour, 1), []
-    if np.shape(detour) not in ((), height.shape):
+    if not callable(joule_per_m):
+        raise TypeError(f"joule_per_m must be a function, such as rdk.route.cost(rover, mission); got {joule_per_m!r}")
+    for name, value in (("tilt_limit_deg", tilt_limit_deg), ("edge_limit_deg", edge_limit_deg)):
+        check(name, value, 0, 90, scalar=True)
+    if np.shape(check("detour", detour, 1)) not in ((), height.shape):
         raise ValueError(f"detour must be one number or have the map's shape {height.shape}; got {np.shape(detour)}")
     detour = np.broadcast_to(detour, height.shape)
     for name, end in (("start", start), ("goal", goal)):
-        if np.shape(end) != (2,) or not all(i in range(n) for i, n in zip(end, height.shape)):
+        if not isinstance(end, (tuple, list, np.ndarray)) or len(end) != 2 or not all(
+                i in range(n) for i, n in zip(end, height.shape)):
             raise ValueError(f"{name} must be a cell (row, column) of the {rows} x {columns} map; got {end!r}")
-        ends.append((int(end[0]), int(end[1])))
     tilt, index = terrain.slope(), np.arange(rows * columns, dtype=np.int32).reshape(rows, columns)
-    safe, edges = tilt <= tilt_limit, []
+    safe, edges = tilt <= tilt_limit_deg, []
     for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):            # each pair of neighbours once, driven both ways
         here = np.s_[:rows - down, max(-right, 0):columns - max(right, 0)]
         there = np.s_[down:, max(right, 0):columns - max(-right, 0)]
         run, rise = terrain.step_m * np.hypot(down, right), height[there] - height[here]
         slope, length = np.degrees(np.arctan2(rise, run)), np.hypot(run, rise) * (detour[here] + detour[there]) / 2
-        ok = safe[here] & safe[there] & (np.abs(slope) <= edge_limit)
+        ok = safe[here] & safe[there] & (np.abs(slope) <= edge_limit_deg)
         a, b, slope, length = index[here][ok], index[there][ok], slope[ok], length[ok]
         edges += [(a, b, joule_per_m(slope) * length), (b, a, joule_per_m(-slope) * length)]
     source, target, joule = (np.concatenate(part) for part in zip(*edges))
@@ -137,14 +138,14 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
         raise ValueError(f"joule_per_m must not be negative: braking gives nothing back; got {joule.min():g} J an edge")
     real = np.isfinite(joule)
     graph = csr_array((joule[real], (source[real], target[real])), shape=(index.size, index.size))
-    first, last = (row * columns + column for row, column in ends)
+    first, last = index[tuple(start)].item(), index[tuple(goal)].item()
     energy, before = dijkstra(graph, indices=first, return_predecessors=True)
     if not np.isfinite(energy[last]):
-        steep = [f"the {name} {end} tilts {tilt[end]:.1f} deg" for name, end in zip(("start", "goal"), ends)
-                 if not safe[end]]
-        why = " and ".join(steep) or f"{np.isfinite(energy).mean():.1%} of the map can be reached from {ends[0]}"
+        steep = [f"the {name} ({row}, {column}) tilts {tilt[row, column]:.1f} deg"
+                 for name, (row, column) in (("start", start), ("goal", goal)) if not safe[row, column]]
+        why = " and ".join(steep) or f"{np.isfinite(energy).mean():.1%} of the map can be reached from the start"
         return Route(np.inf, np.inf, np.empty((0, 2), int), energy.reshape(rows, columns),
-                     f"no way within {tilt_limit:g} deg of tilt and {edge_limit:g} deg along the way: {why}")
+                     f"no way within {tilt_limit_deg:g} deg of tilt and {edge_limit_deg:g} deg along the way: {why}")
     path = [last]
     while path[-1] != first:
         path.append(int(before[path[-1]]))
@@ -170,6 +171,15 @@ class Way:
 
     __repr__ = brief
 
+    def __post_init__(self):
+        fields = {name: check(name, getattr(self, name)) for name in list(vars(self))[:4]}
+        distance, slope, *place = (np.atleast_1d(values) for values in fields.values())
+        if any(values.shape != distance.shape for values in place) or slope.shape != distance[1:].shape or (
+                np.any(np.diff(distance) <= 0) or len(self.skyline_m) != len(self.skylines)):
+            raise ValueError("a way needs rising distance_m, latitude_deg and longitude_deg of one length, one "
+                             "slope_deg fewer, and a skyline for each of skyline_m")
+        vars(self).update(fields)
+
     @property
     def ground_m(self) -> np.ndarray:
         """Length of each leg over the ground."""
@@ -180,12 +190,15 @@ def along(terrain: Terrain, cells: np.ndarray, *, skyline_every_m: float | None 
           beyond: tuple[Terrain, ...] = ()) -> Way:
     """The Way through cells of a map; with `skyline_every_m` it looks around at that spacing and at the end."""
     require(terrain=(terrain, Terrain))
-    cells = np.asarray(cells)
-    x, y = terrain.place(cells[:, 0], cells[:, 1])
+    cells = check("cells", cells, 0, whole=True)
+    if np.shape(cells) != (np.size(cells) // 2, 2) or np.any(cells >= terrain.height_m.shape):
+        raise ValueError("cells must be rows and columns of the map, shape (k, 2); got "
+                         f"shape {np.shape(cells)}, up to {np.max(cells)}")
+    x, y = terrain.place(*cells.T)
     run = np.hypot(np.diff(x), np.diff(y))
-    distance, rise = np.r_[0.0, np.cumsum(run)], np.diff(terrain.height_m[cells[:, 0], cells[:, 1]])
-    stops = [] if skyline_every_m is None else np.unique(np.r_[
-        np.searchsorted(distance, np.arange(0, distance[-1], skyline_every_m)), len(distance) - 1])
+    distance, rise = np.r_[0.0, np.cumsum(run)][:len(x)], np.diff(terrain.height_m[*cells.T])
+    stops = [] if skyline_every_m is None else np.unique(np.r_[np.searchsorted(distance, np.arange(
+        0, distance[-1], check("skyline_every_m", skyline_every_m, above=0, scalar=True))), len(distance) - 1])
     return Way(distance, np.degrees(np.arctan2(rise, run)), *terrain.to_latlon(x, y), tuple(distance[i] for i in stops),
                tuple(terrain.skyline(x[i], y[i], height_m, beyond=beyond) for i in stops))
 
@@ -249,24 +262,22 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     require(way=(way, Way), design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     if scenario.start_utc is None:
         raise ValueError("a march needs the real sun: give the scenario a start_utc, such as '2026-10-01'")
-    check("rest_soc", rest_soc, np.max(model.soc_floor), go_soc), check("go_soc", go_soc, rest_soc, 1)
-    check("science_every_m", science_every_m, above=0, infinite=True), check("science_h", science_h, 0)
-    check("step_h", step_h, above=0)
-    lanes = np.broadcast_shapes(design.shape, scenario.shape, model.shape, np.shape(delay_h))
+    rest_soc = check("rest_soc", rest_soc, np.max(model.soc_floor), check("go_soc", go_soc, 0, 1))
+    science_every_m = check("science_every_m", science_every_m, above=0, infinite=True)
+    science_h, step_h = check("science_h", science_h, 0), check("step_h", step_h, above=0, scalar=True)
+    lanes = np.broadcast_shapes(design.shape, scenario.shape, model.shape, np.shape(check("delay_h", delay_h)))
     if len(lanes) > 1:
         raise ValueError(f"a march takes one row of lanes; got shape {lanes}")
 
     def column(value):
         return np.broadcast_to(np.asarray(value, float), lanes or (1,))
 
-    def leg(record):
-        return record[:, None] if record.shape else record
-
-    wheel, second = (np.broadcast_to(x, (column(0).size, len(way.slope_deg))) for x in per_metre(
-        leg(design), leg(scenario), way.slope_deg, model=leg(model)))
+    wheel, second = (np.broadcast_to(x, (column(0).size, len(way.slope_deg))) for x in per_metre(*(
+        record[:, None] if record.shape else record for record in (design, scenario)), way.slope_deg,
+        model=model[:, None] if model.shape else model))
     length = way.ground_m * check("detour", detour, 1, scalar=True)
-    stuck = np.isinf(second)
-    end = np.where(stuck.any(1), way.distance_m[np.argmax(stuck, 1)], way.distance_m[-1])
+    stuck, goal = np.isinf(second), way.distance_m[-1]
+    end = np.where(stuck.any(1), way.distance_m[np.argmax(stuck, 1)], goal)
     clock, joules = (np.cumsum(np.c_[np.zeros(len(x)), np.where(stuck, 1e6, x * length)], axis=1)
                      for x in (second, wheel))
 
@@ -280,33 +291,31 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     time = np.arange(1, steps + 1) * step_h
     date = sky.julian_date(scenario.start_utc) + (time[:, None] - step_h / 2 + np.atleast_1d(delay_h)) / 24
     declination, noon = sky.subsolar_point(date)
-    light, seen_m = [], np.array(way.skyline_m or (0.0,))            # cos(i) times lit share at each place of a skyline
-    for at, seen in zip(seen_m, way.skylines or (None,)):
+    seen_m, light = np.r_[way.skyline_m or 0.0, np.inf], []          # cos(i) times lit share at each place of a skyline
+    for at, seen in zip(seen_m, way.skylines or [None]):
         lat, lon = (np.interp(at, way.distance_m, values) for values in (
             way.latitude_deg, np.unwrap(way.longitude_deg, period=360)))
         elevation, azimuth = power.sun_position(lat, lon - noon, declination)
-        light.append(power.incidence_factor(lat, lon - noon, scenario.panel_tilt_deg,
-                                            azimuth if follow_sun else scenario.panel_azimuth_deg, declination,
-                                            sky.lit_fraction(elevation, azimuth, seen)))
-    light = np.array([np.broadcast_to(x, (steps, column(0).size)) for x in light])
+        facing = power.incidence_factor(lat, lon - noon, scenario.panel_tilt_deg,
+                                        azimuth if follow_sun else scenario.panel_azimuth_deg, declination,
+                                        sky.lit_fraction(elevation, azimuth, seen))
+        light.append(np.broadcast_to(facing, (steps, column(0).size)))
+    light = np.array([*light, light[-1]])                # beyond the last skyline, the last
     panel = column(power.panel_power(np.asarray(design.solar_area_m2), 1.0, efficiency=model.panel_efficiency,
                                      dust_factor=model.dust_factor, solar_constant_w_m2=model.solar_constant_w_m2))
-    avionics, payload, asleep, capacity = (column(x) for x in (
-        design.avionics_power_w, scenario.payload_power_w, model.hibernation_power_w, design.battery_capacity_wh))
-    floor, into, out = column(model.soc_floor) * capacity, column(model.charge_efficiency), column(
-        model.discharge_efficiency)
-    stored, distance = np.maximum(column(model.soc_initial) * capacity, floor), column(0)
-    resting, work_h, stop, lost = column(0) > 0, column(0), column(science_every_m), column(0) > 0
+    avionics, payload, asleep, capacity, into, out = (column(x) for x in (
+        design.avionics_power_w, scenario.payload_power_w, model.hibernation_power_w, design.battery_capacity_wh,
+        model.charge_efficiency, model.discharge_efficiency))
+    floor = model.soc_floor * capacity
+    stored, distance, work_h = np.maximum(model.soc_initial * capacity, floor), column(0), column(0)
+    resting, lost, stop = column(0) > 0, column(0) > 0, column(science_every_m)
     log, lane = [], np.arange(len(stored))
     for step in range(steps):
-        if len(seen_m) > 1:
-            k = np.clip(np.searchsorted(seen_m, distance, "right") - 1, 0, len(seen_m) - 2)
-            share = (distance - seen_m[k]) / np.diff(seen_m)[k]
-            solar = panel * ((1 - share) * light[k, step, lane] + share * light[k + 1, step, lane])
-        else:
-            solar = panel * light[0, step]
+        k = np.maximum(np.searchsorted(seen_m, distance, "right") - 1, 0)
+        share = np.clip((distance - seen_m[k]) / np.diff(seen_m)[k], 0, 1)
+        solar = panel * ((1 - share) * light[k, step, lane] + share * light[k + 1, step, lane])
         resting = np.where(resting, stored < go_soc * capacity, stored <= rest_soc * capacity)
-        arrived, halted = distance >= way.distance_m[-1], (distance >= end) & (end < way.distance_m[-1])
+        arrived, halted = distance >= goal, (distance >= end) & (end < goal)
         mode = np.select([lost, arrived, halted, resting & (solar > avionics), resting, work_h > 0],
                          [EMPTY, ARRIVED, STALLED, CHARGE, SLEEP, SCIENCE], DRIVE)
         ahead = along_lane(along_lane(distance, points, clock) + 3600 * step_h, clock, points)
@@ -321,10 +330,10 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
         work_h = np.where(mode == SCIENCE, work_h - step_h, np.where(there, science_h, work_h))
         stop, distance = np.where(there, stop + science_every_m, stop), ahead
         log.append((distance, stored, solar, load, mode))
-        if np.all(lost | (distance >= way.distance_m[-1]) | (mode == STALLED)):
+        if np.all(lost | (distance >= goal) | (mode == STALLED)):
             break
     distances, stored, solar, load, modes = (np.array(values) for values in zip(*log))
-    time, arrived = time[:len(log)], distance >= way.distance_m[-1]
+    time, arrived = time[:len(log)], distance >= goal
     ended_h = time[np.argmax(distances >= end, axis=0)]
     arrival = np.where(arrived, ended_h, np.inf)
     messages = [_sentence(way, time, *of_lane) for of_lane in zip(

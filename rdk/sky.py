@@ -5,7 +5,8 @@ longitudes positive, azimuths clockwise from north.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
 import numpy as np
@@ -28,10 +29,13 @@ class Skyline:
     """
     azimuth_deg: np.ndarray
     elevation_deg: np.ndarray
-    latitude_deg: float = float("nan")
-    longitude_deg: float = float("nan")
-    height_m: float = float("nan")
-    name: str = ""
+    latitude_deg: float = field(default=math.nan, compare=False)
+    longitude_deg: float = field(default=math.nan, compare=False)
+    height_m: float = field(default=math.nan, compare=False)
+    name: str = field(default="", compare=False)
+
+    _key, __eq__, __hash__ = Record._key, Record.__eq__, Record.__hash__
+    __setstate__ = Record.__setstate__                   # a copy's arrays are read-only too
 
     def __post_init__(self):
         azimuth, elevation = check("azimuth_deg", self.azimuth_deg), check("elevation_deg", self.elevation_deg, -90, 90)
@@ -41,8 +45,6 @@ class Skyline:
         if not (np.all(np.diff(azimuth) > 0) and azimuth[-1] - azimuth[0] < 360):
             raise ValueError(f"azimuth_deg must rise within one turn; got {azimuth[0]:g} to {azimuth[-1]:g}")
         vars(self).update(azimuth_deg=azimuth, elevation_deg=elevation)
-
-    __setstate__ = Record.__setstate__                   # a copy's arrays are read-only too
 
     @classmethod
     def of(cls, value: Skyline | ArrayLike) -> Skyline:
@@ -54,15 +56,6 @@ class Skyline:
         except (TypeError, ValueError) as error:
             raise ValueError("skyline must be a Skyline, such as rdk.skyline('shackleton_rim'), or elevations in "
                              f"degrees evenly spaced from north clockwise; got {value!r:.80}") from error
-
-    def _key(self):
-        return self.azimuth_deg.tobytes(), self.elevation_deg.tobytes()
-
-    def __eq__(self, other):
-        return self._key() == other._key() if isinstance(other, Skyline) else NotImplemented
-
-    def __hash__(self):
-        return hash(self._key())
 
     def __repr__(self):
         low, high = self.elevation_deg.min(), self.elevation_deg.max()

@@ -67,38 +67,36 @@ class Terrain:
         return (f"<Terrain {self.name or 'unnamed'}: {rows} x {columns} cells of {self.step_m:g} m, "
                 f"{np.nanmin(self.height_m):.0f} to {np.nanmax(self.height_m):.0f} m>")
 
-    # ---- places ------------------------------------------------------------------------------------------------
-
     def _from_axes(self, east, north, up):
         """Plane coordinates of a point of the unit sphere from its components along the axes of the centre."""
         return 2 * self.radius_m * east / (1 + up), 2 * self.radius_m * north / (1 + up)
 
     def to_xy(self, latitude_deg: Real, longitude_deg: Real) -> tuple[Real, Real]:
         """Plane coordinates x, y (m) of places in degrees."""
-        return self._from_axes(*np.tensordot(self._axes, _vertical(latitude_deg, longitude_deg), 1))
+        up = _vertical(check("latitude_deg", latitude_deg, -90, 90), check("longitude_deg", longitude_deg))
+        return self._from_axes(*np.tensordot(self._axes, up, 1))
 
     def to_latlon(self, x: Real, y: Real) -> tuple[Real, Real]:
         """Latitude and east longitude (deg) of plane coordinates in metres."""
-        u, v = np.asarray(x, float) / (2 * self.radius_m), np.asarray(y, float) / (2 * self.radius_m)
+        u, v = (check(name, value) / (2 * self.radius_m) for name, value in (("x", x), ("y", y)))
         square = u * u + v * v
         p = np.tensordot(self._axes.T, np.array([2 * u, 2 * v, 1 - square]) / (1 + square), 1)
         return np.degrees(np.arcsin(np.clip(p[2], -1, 1))), np.degrees(np.arctan2(p[1], p[0])) % 360
 
     def cell(self, x: Real, y: Real) -> tuple[Real, Real]:
         """Row and column of the cell that holds a point of the plane; a point outside is refused."""
-        row = np.floor((self.north_m - np.asarray(y, float)) / self.step_m).astype(int)
-        column = np.floor((np.asarray(x, float) - self.west_m) / self.step_m).astype(int)
-        rows, columns = self.height_m.shape
+        row = np.floor((self.north_m - check("y", y)) / self.step_m).astype(int)
+        column = np.floor((check("x", x) - self.west_m) / self.step_m).astype(int)
+        (rows, columns), step = self.height_m.shape, self.step_m
         if not np.all((row >= 0) & (row < rows) & (column >= 0) & (column < columns)):
-            raise ValueError(f"the point lies outside the map: x {self.west_m:g} to "
-                             f"{self.west_m + columns * self.step_m:g} m, y {self.north_m - rows * self.step_m:g} to "
-                             f"{self.north_m:g} m; got {x!r}, {y!r}")
+            raise ValueError(f"the point lies outside the map: x {self.west_m:g} to {self.west_m + columns * step:g} m,"
+                             f" y {self.north_m - rows * step:g} to {self.north_m:g} m; got {x!r:.80}, {y!r:.80}")
         return row, column
 
     def place(self, row: Real, column: Real) -> tuple[Real, Real]:
         """Plane coordinates x, y (m) of the centres of cells."""
-        return (self.west_m + (np.asarray(column) + 0.5) * self.step_m,
-                self.north_m - (np.asarray(row) + 0.5) * self.step_m)
+        return (self.west_m + (check("column", column) + 0.5) * self.step_m,
+                self.north_m - (check("row", row) + 0.5) * self.step_m)
 
     def at(self, x: Real, y: Real) -> Real:
         """Height at points of the plane, bilinear between the centres of cells; NaN outside."""
@@ -114,23 +112,16 @@ class Terrain:
         i += columns
         return np.where(inside, top * (1 - down) + (flat[i] * (1 - right) + flat[i + 1] * right) * down, np.nan)
 
-    # ---- read-outs ---------------------------------------------------------------------------------------------
-
-    def _gradient(self):
-        """Rise over run towards x and y, by central differences."""
-        down, right = np.gradient(self.height_m, self.step_m)
-        return right, -down
-
     def slope(self) -> np.ndarray:
         """Steepest slope of each cell in degrees, over a baseline of two cells: shorter slopes are steeper."""
-        return np.degrees(np.arctan(np.hypot(*self._gradient())))
+        return np.degrees(np.arctan(np.hypot(*np.gradient(self.height_m, self.step_m))))
 
     def hillshade(self, azimuth_deg: float = 315.0, elevation_deg: float = 30.0) -> np.ndarray:
         """Brightness 0 to 1 of each cell, lit from an azimuth clockwise from the top of the map; no cast shadows."""
-        east, north = self._gradient()
-        azimuth, elevation = np.radians([azimuth_deg, elevation_deg])
-        facing = np.sin(elevation) - np.cos(elevation) * (np.sin(azimuth) * east + np.cos(azimuth) * north)
-        return np.clip(facing / np.sqrt(1 + east**2 + north**2), 0, 1)
+        down, right = np.gradient(self.height_m, self.step_m)
+        azimuth, elevation = np.radians([check("azimuth_deg", azimuth_deg), check("elevation_deg", elevation_deg)])
+        facing = np.sin(elevation) - np.cos(elevation) * (np.sin(azimuth) * right - np.cos(azimuth) * down)
+        return np.clip(facing / np.sqrt(1 + right**2 + down**2), 0, 1)
 
     def skyline(self, x: float, y: float, height_m: float = 2.0, *, beyond: Sequence[Terrain] = (),
                 directions: int = 720, farthest_m: float = 180e3) -> Skyline:
@@ -139,8 +130,10 @@ class Terrain:
         Coarser maps `beyond` serve where this one ends: the first that covers a point gives its height; where all end,
         nothing more is seen. The search begins at 15 m, by half a cell, later by 1 % of the distance.
         """
-        check("height_m", height_m, 0, scalar=True), check("directions", directions, 4, whole=True, scalar=True)
-        check("farthest_m", farthest_m, above=NEAREST_M)
+        check("height_m", height_m, 0, scalar=True)
+        check("farthest_m", farthest_m, above=NEAREST_M, scalar=True)
+        azimuth = np.arange(check("directions", directions, 4, whole=True, scalar=True)) * 360 / directions
+        lat, lon = self.to_latlon(x, y)
         ground = float(self.at(float(x), float(y)))
         if np.isnan(ground):
             raise ValueError(f"no height is known at x {x!r} m, y {y!r} m of {self!r}")
@@ -148,11 +141,9 @@ class Terrain:
         s = np.arange(NEAREST_M, min(turn, farthest_m), self.step_m / 2)
         if farthest_m > turn:
             s = np.r_[s, np.geomspace(turn, farthest_m, max(int(np.log(farthest_m / turn) / GROWTH), 2))]
-        arc, azimuth = s / self.radius_m, np.arange(directions) * 360 / directions
-        lat, lon = self.to_latlon(x, y)
+        arc, height = s / self.radius_m, np.full((directions, len(s)), np.nan)
         east, north, up = _axes(lat, lon)
         ahead = np.outer(np.cos(np.radians(azimuth)), north) + np.outer(np.sin(np.radians(azimuth)), east)
-        height = np.full((directions, len(s)), np.nan)
         for terrain in (self, *beyond):                  # of each map only the stretch that it can add to
             corner = np.subtract(terrain.to_xy(lat, lon), (terrain.west_m, terrain.north_m))
             other = corner - np.multiply(terrain.height_m.shape[::-1], (terrain.step_m, -terrain.step_m))
@@ -193,12 +184,19 @@ def read(path: str | Path, **geometry: float) -> Terrain:
 
 
 def _number(path, header, *names, default=None):
-    """The first of these entries that a header has, as a number."""
+    """The first of these entries that a header has, as a number; in metres where it is like 1737.4 <KM>."""
     value = next((header[name] for name in names if name in header), default)
+    figure, _, unit = str(value).partition("<")
     try:
-        return float(value)
-    except (TypeError, ValueError):
+        return float(figure) * (1000 if unit.startswith("K") else 1)
+    except ValueError:
         raise ValueError(f"{path.name} cannot be placed: {names[0]} must be a number; got {value!r}") from None
+
+
+def _expect(path, what, value, allowed):
+    if value not in allowed:
+        raise ValueError(f"{path.name} cannot be placed: {what} must be {' or '.join(allowed)}; got {value!r}")
+    return value
 
 
 def _png(path, **given):
@@ -211,6 +209,9 @@ def _png(path, **given):
         if centre := re.search(r"centre ([\d.]+) ([NS]) (-?[\d.]+) E", row.get("projection", "")):
             north = 1 if centre[2] == "N" else -1
             given |= dict(latitude_deg=north * float(centre[1]), longitude_deg=float(centre[3]))
+    for name in given:
+        if name not in (known := ("scale", "offset", *limits_of(Terrain))):
+            raise unknown("no geometry", name, known)
     missing = [name for name in needed if name not in given]
     if missing:
         raise ValueError(f"{path.name}: a PNG does not say where it lies; give {', '.join(missing)}")
@@ -218,31 +219,26 @@ def _png(path, **given):
         if not image.mode.startswith("I"):
             raise ValueError(f"{path.name}: heights need one channel of 16 bits; got mode {image.mode}")
         raw = np.asarray(image).astype(float)
-    return Terrain(raw * given.pop("scale") + given.pop("offset"), name=path.stem, **given)
+    scale, offset = (check(name, given.pop(name), scalar=True) for name in needed[:2])
+    return Terrain(raw * scale + offset, name=path.stem, **given)
 
 
 def _pds(path):
     found = {p.suffix.lower(): p for p in path.parent.iterdir() if p.stem == path.stem}
-    for kind in (".lbl", ".img"):
-        if kind not in found:
-            raise FileNotFoundError(f"{path.name} needs {path.stem}{kind} beside it")
+    if missing := {".lbl", ".img"} - set(found):
+        raise FileNotFoundError(f"{path.name} needs {path.stem}{missing.pop()} beside it")
     text = re.sub(r"/\*.*?\*/", "", found[".lbl"].read_text(encoding="latin-1").upper(), flags=re.S)
-    entries = re.findall(r"^\s*(\^?\w+)\s*=\s*([^<\n]*)(<K)?", text, re.M)      # <K: of <KM>
-    label = {key: value.strip(" \t\r\"'") for key, value, _ in entries}
-    scale = {key: 1000 if unit else 1 for key, _, unit in entries}
-
-    def entry(key, **default):
-        """A number of the label, lengths in metres."""
-        return _number(path, label, key, **default) * scale.get(key, 1)
-
+    entries = re.findall(r"^\s*(\^?\w+)\s*=(.*)$", text, re.M)
+    label = {key: value.strip(" \t\r\"'") for key, value in entries}
+    entry = partial(_number, path, label)
+    kinds = {"LSB_INTEGER": "<i", "MSB_INTEGER": ">i", "PC_REAL": "<f", "IEEE_REAL": ">f"}
     _expect(path, "projection", label.get("MAP_PROJECTION_TYPE", "").replace("_", " "),
             ("POLAR STEREOGRAPHIC", "STEREOGRAPHIC"))
     _expect(path, "direction of longitude", label.get("POSITIVE_LONGITUDE_DIRECTION"), ("EAST",))
-    radius = entry("A_AXIS_RADIUS")
-    kinds = {"LSB_INTEGER": "<i", "MSB_INTEGER": ">i", "PC_REAL": "<f", "IEEE_REAL": ">f"}
-    sample = _expect(path, "sample type", label.get("SAMPLE_TYPE"), kinds)
-    rows, columns = int(entry("LINES")), int(entry("LINE_SAMPLES"))
-    raw = np.fromfile(found[".img"], np.dtype(f"{kinds[sample]}{int(entry('SAMPLE_BITS')) // 8}"))
+    sample = kinds[_expect(path, "sample type", label.get("SAMPLE_TYPE"), kinds)]
+    bits = _expect(path, "SAMPLE_BITS", label.get("SAMPLE_BITS"), ("16", "32", "64"))
+    radius, rows, columns = entry("A_AXIS_RADIUS"), int(entry("LINES")), int(entry("LINE_SAMPLES"))
+    raw = np.fromfile(found[".img"], np.dtype(f"{sample}{int(bits) // 8}"))
     if raw.size != rows * columns:
         raise ValueError(f"{found['.img'].name} holds {raw.size} samples; its label says {rows} x {columns}")
     height = raw.reshape(rows, columns).astype(float)
@@ -265,40 +261,31 @@ def _geotiff(path):
         raise ImportError(f"{path.name}: reading a GeoTIFF needs tifffile: pip install tifffile") from None
     with tifffile.TiffFile(path) as file:
         page = file.pages[0]
-        height, keys = page.asarray().astype(float), dict(page.geotiff_tags or {})
-        nodata = page.tags.get("GDAL_NODATA")
+        height, keys, nodata = page.asarray().astype(float), page.geotiff_tags or {}, page.tags.get("GDAL_NODATA")
     if not {"ModelPixelScale", "ModelTiepoint", "ProjCoordTransGeoKey"} <= set(keys):
         raise ValueError(f"{path.name} cannot be placed: a GeoTIFF needs a pixel scale, a tie point and a projection")
     if nodata is not None:
         height[height == float(nodata.value.strip("\0 "))] = np.nan
-    projection = int(keys["ProjCoordTransGeoKey"])
-    _expect(path, "projection", projection, {1: "transverse Mercator", 14: "stereographic", 15: "polar stereographic",
-                                             16: "oblique stereographic", 21: "orthographic"})
+    entry, number = partial(_number, path, keys, default=0.0), int(keys["ProjCoordTransGeoKey"])
+    names = {1: "transverse Mercator", 14: "stereographic", 15: "polar stereographic", 16: "oblique stereographic",
+             21: "orthographic"}
+    projection = _expect(path, "projection", names.get(number, number), names.values())
     step, step_y = keys["ModelPixelScale"][:2]
     if not np.isclose(step, step_y, rtol=1e-6):
         raise ValueError(f"{path.name}: cells must be square; got {step:g} x {step_y:g} m")
-
-    entry = partial(_number, path, keys, default=0.0)
     latitude = entry("ProjNatOriginLatGeoKey", "ProjCenterLatGeoKey")
     longitude = entry("ProjStraightVertPoleLongGeoKey", "ProjNatOriginLongGeoKey", "ProjCenterLongGeoKey")
-    if projection == 15 and abs(latitude) != 90 or entry("ProjScaleAtNatOriginGeoKey", default=1.0) != 1:
+    if number == 15 and abs(latitude) != 90 or entry("ProjScaleAtNatOriginGeoKey", default=1.0) != 1:
         raise ValueError(f"{path.name}: the scale must be true at the centre of the projection")
     i, k, _, x, y = keys["ModelTiepoint"][:5]
     middle = 0.5 if entry("GTRasterTypeGeoKey", default=1) == 2 else 0.0     # 2: the tie point is a cell's centre
     west = x - (i + middle) * step - entry("ProjFalseEastingGeoKey", "ProjFalseOriginEastingGeoKey")
     north = y + (k + middle) * step - entry("ProjFalseNorthingGeoKey", "ProjFalseOriginNorthingGeoKey")
     far = max(abs(west), abs(north), abs(west + height.shape[1] * step), abs(north - height.shape[0] * step))
-    if projection in (1, 21) and far > 100e3:            # near its centre every such plane is the tangent one
-        raise ValueError(f"{path.name}: this projection is read within 100 km of its centre; it reaches {far:.0f} m")
+    if number in (1, 21) and far > 100e3:                # near its centre every such plane is the tangent one
+        raise ValueError(f"{path.name}: {projection} is read within 100 km of its centre; it reaches {far:.0f} m")
     return Terrain(height, step, west, north, latitude, longitude,
                    entry("GeogSemiMajorAxisGeoKey", default=np.nan), path.stem)
-
-
-def _expect(path, what, value, allowed):
-    if value not in allowed:
-        words = allowed.values() if isinstance(allowed, dict) and isinstance(value, int) else allowed
-        raise ValueError(f"{path.name} cannot be placed: {what} must be {' or '.join(words)}; got {value!r}")
-    return value
 
 
 # ---- made-up ground --------------------------------------------------------------------------------------------
@@ -310,12 +297,12 @@ def synthetic(seed: int, *, like: str = "connecting_ridge_10m", cells: int = 256
     `like` is a map of `data/slope_histograms.csv`, whose name ends in the length of its cells; `step_m` is that length
     unless given. Slopes belong to this baseline. The same seed makes the same ground.
     """
-    table = catalog.rows("slope_histograms.csv")
-    known = [name.removesuffix("_pct") for name in table[0] if name.endswith("_pct")]
+    table = catalog.table("slope_histograms.csv")
+    known = [name.removesuffix("_pct") for name in table.filter(like="_pct")]
     if like not in known:
         raise unknown("no map", like, known)
     cells = check("cells", cells, 32, whole=True, scalar=True)
-    step = check("step_m", step_m if step_m is not None else float(re.search(r"_(\d+)m", like)[1]), above=0)
+    step = check("step_m", float(re.search(r"_(\d+)m", like)[1]) if step_m is None else step_m, above=0, scalar=True)
     rng = np.random.default_rng(check("seed", seed, 0, whole=True, scalar=True))
     wave = np.hypot(np.fft.fftfreq(cells)[:, None], np.fft.fftfreq(cells))
     wave[0, 0] = np.inf                                  # amplitude falls as the wavelength to the power 2.5
@@ -327,25 +314,22 @@ def synthetic(seed: int, *, like: str = "connecting_ridge_10m", cells: int = 256
         r = np.hypot(away[0][:, None], away[1]) / (diameter / 2)
         depth = rng.uniform(0.02, 0.2) * diameter       # worn bowls to fresh ones, with a rim a fifth as high
         height += depth * np.where(r < 1, 1.2 * np.minimum(r, 1)**2 - 1, 0.2 / np.maximum(r, 1)**3)
-    return Terrain(_with_slopes(height, table, like) * step, step, -cells * step / 2, cells * step / 2, latitude_deg,
+    shares = np.cumsum(np.r_[0, table[f"{like}_pct"]])
+    slopes = np.interp((np.arange(cells**2) + 0.5) / cells**2, shares / shares[-1], np.r_[0, table.slope_to_deg])
+    return Terrain(_with_slopes(height, slopes) * step, step, -cells * step / 2, cells * step / 2, latitude_deg,
                    longitude_deg, name=f"synthetic {seed}, like {like}")
 
 
-def _with_slopes(height, table, like):
-    """Heights in cells whose slopes have the shares of a table: scale each gradient, integrate, again."""
-    shares = np.cumsum([float(row[f"{like}_pct"]) for row in table])
-    ends = np.array([float(row["slope_to_deg"]) for row in table])
-    wanted = np.tan(np.radians(np.interp((np.arange(height.size) + 0.5) / height.size, np.r_[0, shares / shares[-1]],
-                                         np.r_[0, ends])))
+def _with_slopes(height, slopes_deg):
+    """Heights in cells with these slopes, given by rising size: scale each gradient, integrate, again."""
     wave = np.sin(2 * np.pi * np.fft.fftfreq(len(height)))           # of central differences
     square = wave[:, None]**2 + wave**2
     square[square < 1e-12] = np.inf                      # level and checkerboard, which have no slope
     for _ in range(10):
-        down = (np.roll(height, -1, 0) - np.roll(height, 1, 0)) / 2
-        right = (np.roll(height, -1, 1) - np.roll(height, 1, 1)) / 2
+        down, right = ((np.roll(height, -1, axis) - np.roll(height, 1, axis)) / 2 for axis in (0, 1))
         steep = np.hypot(down, right)
         factor = np.empty(height.size)
-        factor[np.argsort(steep, axis=None, kind="stable")] = wanted
+        factor[np.argsort(steep, axis=None, kind="stable")] = np.tan(np.radians(slopes_deg))
         factor = factor.reshape(height.shape) / np.maximum(steep, 1e-12)
         spectrum = -1j * (wave[:, None] * np.fft.fft2(down * factor) + wave * np.fft.fft2(right * factor)) / square
         height = np.fft.ifft2(spectrum).real             # the nearest surface to these gradients

@@ -272,8 +272,7 @@ def test_in_the_dark_the_pack_lasts_as_long_as_its_energy():
 
 
 def test_a_slope_that_the_wheels_do_not_hold_strands():
-    way = straight(legs=50)
-    way.slope_deg[30:] = 34.0
+    way = replace(straight(legs=50), slope_deg=[0.0] * 30 + [34.0] * 20)
     march = route.march(way, ROVER, SUNNY, follow_sun=True)
     assert march.stranded_m == 300.0 and march.message.startswith("stranded at 300 m")
     assert "do not hold the slope of 34.0 deg" in march.message and march.hours("stalled") == 0.25

@@ -9,6 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+import chance
+import sensitivity
+
 import rdk
 from rdk import catalog, rediscovery, rules, tradespace
 
@@ -55,11 +58,11 @@ def test_an_empty_front_has_a_row_without_numbers(front):
 
 
 def test_generations_of_one_search_are_those_of_shorter_searches():
-    table = rules.over_generations([MARE], [3], [4, 10], population=20)
-    short = rules.front_statistics([tradespace.pareto_front(MARE, population=20, generations=4, seed=3)])
-    assert list(table.generations) == [4, 10]
+    both = rediscovery.rediscover("Pragyan", population=20, seeds=[3], generations=[4, 10])
+    short = rediscovery.rediscover(["Pragyan"], population=20, seeds=[3], generations=[4])
+    assert list(both.generations) == [4, 10]
     # the same bits: the search does not know how long it will last
-    assert table.iloc[0].to_dict() == short.iloc[0].to_dict()
+    assert both.iloc[0].to_dict() == short.iloc[0].to_dict()
 
 
 def test_crossover_is_the_lowest_height_with_six_wheels():
@@ -149,7 +152,7 @@ def test_a_front_does_not_hang_on_the_last_bits(monkeypatch, name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_family_spans_its_ranges(name):
-    found = rules.family(name, 8, seed=4)
+    found = sensitivity.family(name, 8, seed=4)
     row = next(row for row in catalog.rows("scenarios.csv") if row["scenario"] == name)
     columns = dict(latitude_deg="latitude_deg", duration_earth_days="duration_days", slope_deg="slope_deg")
     for field, column in columns.items():
@@ -161,21 +164,21 @@ def test_family_spans_its_ranges(name):
     assert all(s.panel_azimuth_deg == (0 if s.latitude_deg < 0 else 180) for s in found)
     base = rdk.scenario(name)
     assert all(s.soil == base.soil and s.problem == base.problem for s in found)
-    assert len({s.name for s in found}) == 8 and rules.family(name, 8, seed=4) == found
+    assert len({s.name for s in found}) == 8 and sensitivity.family(name, 8, seed=4) == found
 
 
 def test_family_refuses_what_has_none():
     with pytest.raises(ValueError, match="'mare_micro' has no family; choose from equatorial_mare_traverse"):
-        rules.family("mare_micro", 3)
+        sensitivity.family("mare_micro", 3)
     with pytest.raises(ValueError, match="count must be"):
-        rules.family(NAMES[0], 0)
+        sensitivity.family(NAMES[0], 0)
 
 
 # ---- sensitivities -----------------------------------------------------------------------------------------
 
 def test_sobol_indices_of_mass_are_those_of_a_sum():
     """The dry mass is nearly a sum over the variables: first and total order agree and add up to 1."""
-    table = rules.sobol(MARE, metrics=("total_mass_kg",), count=512).set_index("input")
+    table = sensitivity.sobol(MARE, metrics=("total_mass_kg",), count=512).set_index("input")
     # 512 points of a quasi-random sequence: indices are good to some hundredths
     assert_allclose(table.first_order.sum(), 1, atol=0.05)
     assert_allclose(table.total_order, table.first_order, atol=0.05)
@@ -189,7 +192,7 @@ def test_sobol_indices_of_mass_are_those_of_a_sum():
 
 def test_sobol_index_of_the_chassis_against_the_variance_itself():
     """S_1 = Var(E[m | m_c]) / Var(m): the mass is linear in the chassis, so that variance is known."""
-    table = rules.sobol(MARE, metrics=("total_mass_kg",), count=1024).set_index("input")
+    table = sensitivity.sobol(MARE, metrics=("total_mass_kg",), count=1024).set_index("input")
     designs = rdk.random_designs(100_000, seed=1)
     mass = rules.mass_of(designs, MARE, rdk.Model()).total_kg
     slope = 1.2 * 1.05 * 1.08 * (1 + 0.08 / 2)           # half of the designs pay for a linkage
@@ -198,21 +201,21 @@ def test_sobol_index_of_the_chassis_against_the_variance_itself():
 
 
 def test_sobol_over_uncertainties_knows_what_moves_what():
-    table = rules.sobol(MARE, design=rdk.rover("Rashid-1"), count=256)
+    table = sensitivity.sobol(MARE, design=rdk.rover("Rashid-1"), count=256)
     names = [row["name"] for row in catalog.rows("uncertainties.csv")]
     assert set(table.input) == set(names) and len(table) == 3 * len(set(names))
     slope = table.query("metric == 'slope_capability_deg'").set_index("input").total_order
     # the array does not touch the wheel: what is left is rounding
     assert slope.idxmax() == "shear_scale" and abs(slope["dust_factor"]) < 1e-12
-    again = rules.sobol(MARE, design=rdk.rover("Rashid-1"), count=256)
+    again = sensitivity.sobol(MARE, design=rdk.rover("Rashid-1"), count=256)
     assert again.equals(table), "same seed, same bits"
 
 
 def test_sobol_refuses_nonsense():
     with pytest.raises(ValueError, match="count must be a power of 2; got 100"):
-        rules.sobol(MARE, count=100)
+        sensitivity.sobol(MARE, count=100)
     with pytest.raises(ValueError, match="no Performance field 'speed'; nearest are"):
-        rules.sobol(MARE, metrics=("speed",))
+        sensitivity.sobol(MARE, metrics=("speed",))
 
 
 # ---- rediscovery -------------------------------------------------------------------------------------------
@@ -262,7 +265,7 @@ def test_rediscovery_refuses_an_unknown_rover():
 
 
 def test_baselines(found):
-    table = rediscovery.baselines(found.query("generations == 6"), count=1000).set_index("rover")
+    table = chance.baselines(found.query("generations == 6"), count=1000).set_index("rover")
     # the mean of 200,000 pairs of 1,000 points: the points' own scatter is a percent
     assert_allclose(table.random_pair, CUBE_PAIR, rtol=0.02)
     assert table.feasible_fraction.between(0.7, 0.95).all()
@@ -270,7 +273,7 @@ def test_baselines(found):
     assert (table.nearest_capped_low <= table.nearest_capped).all()
     # more chances, nearer
     more = found.query("generations == 6").assign(front_designs=500)
-    assert (rediscovery.baselines(more, count=1000).nearest_feasible.to_numpy()
+    assert (chance.baselines(more, count=1000).nearest_feasible.to_numpy()
             < table.nearest_feasible.to_numpy()).all()
 
 
@@ -278,7 +281,7 @@ def test_baselines(found):
 def test_light_designs_are_uniform_in_the_light_part_of_the_space(name):
     """Against plain rejection: drawn from the whole box, kept where light enough, the means are the same."""
     target = rediscovery.Target.of(name)
-    found = rediscovery.lighter_than(target, 500, seed=1)
+    found = chance.lighter_than(target, 500, seed=1)
     assert (rules.mass_of(found, target.scenario, rdk.Model()).total_kg <= target.ceiling_kg).all()
     designs = rdk.random_designs(400_000, seed=2)
     plain = designs[rules.mass_of(designs, target.scenario, rdk.Model()).total_kg <= target.ceiling_kg]

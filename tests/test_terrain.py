@@ -253,7 +253,7 @@ def test_pds_that_cannot_be_placed(tmp_path):
     for words, message in ((dict(projection="SIMPLE CYLINDRICAL"), "cannot be placed: projection must be POLAR"),
                            (dict(radius=6378.1), "radius_m must be at least 1.73e[+]06 .*; got 6378100.0"),
                            (dict(rows=5), "label says 5 x 6"),
-                           (dict(step="many"), "MAP_SCALE must be a number; got 'MANY'"),
+                           (dict(step="many"), "MAP_SCALE must be a number; got 'MANY <"),
                            (dict(kind="VAX_REAL"), "sample type must be LSB_INTEGER")):
         with pytest.raises(ValueError, match=message):
             terrain.read(write_pds(tmp_path, raw, **words))
