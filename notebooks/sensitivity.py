@@ -5,10 +5,10 @@ import numpy as np
 import pandas as pd
 
 from rdk import catalog
-from rdk._fields import check, require, unknown
+from rdk._fields import check, unknown
 from rdk.design import DESIGN_SPACE, Design, Model, Scenario
 from rdk.mission import evaluate
-from rdk.sampling import METRICS, decode, replaced
+from rdk.sampling import METRICS, decode, replaced, single
 from rdk.uncertainty import inputs_at, uncertain_names
 
 
@@ -47,9 +47,7 @@ def sobol(scenario: Scenario, *, metrics=("range_km", "total_mass_kg", "slope_ca
     order, total_low and total_high.
     """
     from scipy.stats import qmc, sobol_indices
-    require(scenario=(scenario, Scenario), model=(model, Model))
-    if design is not None:
-        require(design=(design, Design))
+    single(scenario=scenario, model=model, **{} if design is None else {"design": design})
     count = check("count", count, 2, whole=True, scalar=True)
     if count & (count - 1):
         raise ValueError(f"count must be a power of 2; got {count}")
