@@ -56,18 +56,14 @@ def axle_loads(mass_kg: Values, wheelbase_m: Values, centre_height_m: Values, sl
     ----------
     mass_kg, wheelbase_m : float or ndarray
         Positive.
-    centre_height_m : float or ndarray
-        Height of the centre of mass above the ground, zero or more.
     slope_deg : float or ndarray
-        Above -90 and below 90; positive: the front is uphill.
+        Between -90 and 90; positive: the front is uphill.
     wheel_count : int or ndarray
         4, two axles at the ends of the wheelbase; 6, three evenly spaced, with the bogie on front and middle.
-    centre_offset_m : float or ndarray
-        Centre of mass ahead of the middle of the wheelbase.
+    centre_height_m, centre_offset_m : float or ndarray
+        Of the centre of mass above the ground (zero or more) and ahead of the middle of the wheelbase.
     pivot_height_m : float or ndarray, optional
-        Height of the bogie's pivot, midway between its wheels. Default: the ground, where the bogie shares evenly on
-        every slope.
-    gravity_m_s2 : float or ndarray
+        Of the bogie's pivot, midway between its wheels; by default on the ground: there it always shares evenly.
 
     Returns
     -------
@@ -114,16 +110,8 @@ def tip_over(wheelbase_m: Values, track_m: Values, centre_height_m: Values, *,
 
     Facing up, the load of the uphill pair (on six wheels: of the whole bogie) vanishes there; across the slope, that of
     the uphill side. A bogie's front wheel lifts before its load does where the pivot is higher than half the centre of
-    mass: that is no tip-over yet.
-
-    Parameters
-    ----------
-    wheelbase_m, track_m : float or ndarray
-        Distances of the outer wheels' centres, along and across; positive.
-    centre_height_m : float or ndarray
-        Of the centre of mass above the ground, zero or more.
-    centre_offset_m : float or ndarray
-        Centre of mass ahead of the middle of the wheelbase; inside the wheelbase.
+    mass: that is no tip-over yet. Wheelbase and track are those of the outer wheels' centres; the centre of mass is at
+    `centre_height_m` (zero or more), `centre_offset_m` ahead of the middle and inside the wheelbase.
 
     Examples
     --------
@@ -145,25 +133,10 @@ def stance(total_mass_kg: Values, wheels_mass_kg: Values, wheel_radius_m: Values
            envelope_density_kg_m3: Values = 145.0) -> Stance:
     """Track and centre of mass that a rover of these sizes would have, from what published rovers have in common.
 
-    The rover fills an envelope of wheelbase and two radii, by track and one width, at the density of published
-    envelopes (110 to 230 kg/m3). The body reaches from the belly (1.2 radii up on a rigid rover, 2 under a
-    rocker-bogie) to its top, at least 5 cm higher. The wheels' mass sits at the axles, all else in the middle of the
-    body.
-
-    Parameters
-    ----------
-    total_mass_kg, wheels_mass_kg : float or ndarray
-        Of the rover, and of all its wheels.
-    wheel_radius_m, wheel_width_m, wheelbase_m : float or ndarray
-    wheel_count : int or ndarray
-        4 (rigid) or 6 (rocker-bogie).
-    track_ratio : float or ndarray
-        Track over wheelbase: 0.65 to 1.3 on published rovers.
-    envelope_density_kg_m3 : float or ndarray
-
-    Notes
-    -----
-    Nothing is checked here: `Design` and `Model` check their values.
+    The rover fills an envelope of wheelbase and two radii, by track (`track_ratio` times the wheelbase: 0.65 to 1.3 on
+    published rovers) and one width, at the density of published envelopes (110 to 230 kg/m3). The body reaches from the
+    belly (1.2 radii up on a rigid rover, 2 under a rocker-bogie) to its top, at least 5 cm higher. The mass of all
+    wheels sits at the axles, all else in the middle of the body. Nothing is checked here: `Design` and `Model` are.
     """
     radius = np.asarray(wheel_radius_m)
     track = track_ratio * wheelbase_m
@@ -178,25 +151,7 @@ def static_pressure_kpa(wheel: Wheel, soil: Soil, load_n: Values) -> Values:
     """Mean vertical pressure under a wheel at rest: its load over width and chord, W / (2 b r sin(theta_s)).
 
     The arc theta_s on either side is that of the imposed-arc kernel, which gets sinkage at rest right where it can be
-    checked; `Performance.ground_pressure_kpa` is that of the kernel in use, on the move.
-
-    Parameters
-    ----------
-    wheel : Wheel
-    soil : Soil
-    load_n : float or ndarray
-        Positive.
-
-    Returns
-    -------
-    float or ndarray
-        In kPa; NaN where the wheel is buried.
-
-    Examples
-    --------
-    >>> import rdk
-    >>> f"{static_pressure_kpa(rdk.rover('Rashid-1').wheel, rdk.soil('apollo-nominal'), 4.06):.1f} kPa"
-    '1.2 kPa'
+    checked; `Performance.ground_pressure_kpa` is that of the kernel in use, on the move. NaN where the wheel is buried.
     """
     angle = wheel_forces(wheel, soil, load_n, 0.0, kernel="imposed-arc").entry_angle_rad
     return load_n / (2 * wheel.width_m * wheel.radius_m * np.sin(angle)) / 1000
