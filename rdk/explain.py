@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import catalog
-from .design import DESIGN_SPACE, Model, Scenario
+from .design import DESIGN_SPACE, Model
 from .mission import evaluate
 from .sampling import holds, replaced, single
 from .sky import Skyline
@@ -20,7 +20,8 @@ UNITS = {"kn_m_n1": "kN/mⁿ⁺¹", "kn_m_n2": "kN/mⁿ⁺²", "kg_m2": "kg/m²"
 WORDS = {"total_mass": "mass", "average_solar_power": "mean sunlight", "final_soc": "charge at the end",
          "minimum_soc": "lowest charge", "hot_temperature": "noon temperature", "cold_temperature": "night temperature",
          "thermal_survival": "survival of heat and cold", "energy_balance_speed": "energy-balance speed",
-         "feasible": "drives the mission", "odds": "odds of the demands", "growth": "margin"}
+         "feasible": "drives the mission", "odds": "odds of the demands", "growth": "margin", "solar_area": "array",
+         "hub_no_load_speed": "hub speed", "peak_wheel_torque": "hub torque"}
 
 
 class Binding(NamedTuple):
@@ -65,32 +66,31 @@ def binding(design, scenario, performance, *, model=Model()):
     speed, array or battery. The key is one of "soil", "traction", "torque", "duty", "sun", "range limit", "battery",
     "hub speed"; the detail compares the levers.
     """
-    p, base, key = performance, design.avionics_power_w + scenario.payload_power_w, stuck(design, performance)
-    if key == "soil":
-        return Binding(key, "The soil cannot carry the wheels at any sinkage: the rover is buried. Widen or enlarge "
-                            "the wheels, or shed mass.")
-    if key == "torque":
-        also = " Traction fails as well." if p.slip >= model.slip_max else ""
-        return Binding(key, f"Torque binds: climbing {scenario.slope_deg:g} deg takes {p.wheel_torque_nm:.2f} N m "
-                            f"at each wheel, the hub gives {design.peak_wheel_torque_nm:.2f} N m.{also}")
-    if key == "traction":
-        return Binding(key, f"Traction binds: no slip develops the pull that {scenario.slope_deg:g} deg "
-                            f"demands; this rover climbs {p.slope_capability_deg:.1f} deg.")
-    if p.average_solar_power_w <= base:
-        return Binding("sun", f"Sunlight binds: the array averages {p.average_solar_power_w:.1f} W, avionics and "
-                              f"payload draw {base:.1f} W, and nothing is left for driving.")
-    if scenario.duty_cycle == 0:
-        return Binding("duty", "The duty cycle is 0: the rover never drives.")
-    if p.range_km >= scenario.traverse_limit_km:
-        return Binding("range limit", f"The range limit binds: the rover reaches the mission's "
-                                      f"{scenario.traverse_limit_km:g} km before the time is up.")
+    p, s, base = performance, scenario, design.avionics_power_w + scenario.payload_power_w
+    key = stuck(design, p) or (
+        "sun" if p.average_solar_power_w <= base else "duty" if s.duty_cycle == 0
+        else "range limit" if p.range_km >= s.traverse_limit_km else "")
+    also = " Traction fails as well." if p.slip >= model.slip_max else ""
+    sentences = {
+        "soil": "The soil cannot carry the wheels at any sinkage: the rover is buried. Widen or enlarge the wheels, or "
+                "shed mass.",
+        "torque": f"Torque binds: climbing {s.slope_deg:g} deg takes {p.wheel_torque_nm:.2f} N m at each wheel, the "
+                  f"hub gives {design.peak_wheel_torque_nm:.2f} N m.{also}",
+        "traction": f"Traction binds: no slip develops the pull that {s.slope_deg:g} deg demands; this rover climbs "
+                    f"{p.slope_capability_deg:.1f} deg.",
+        "sun": f"Sunlight binds: the array averages {p.average_solar_power_w:.1f} W, avionics and payload draw "
+               f"{base:.1f} W, and nothing is left for driving.",
+        "duty": "The duty cycle is 0: the rover never drives.",
+        "range limit": f"The range limit binds: the rover reaches the mission's {s.traverse_limit_km:g} km before the "
+                       "time is up."}
+    if key:
+        return Binding(key, sentences[key])
     gains = _gains(design, scenario, p, model)
-    key = max(gains, key=gains.get)
     detail = "10 % more hub speed gives {:.1f} % more range, array {:.1f} %, battery {:.1f} %".format(*gains.values())
     if p.log is not None and p.log.throttled.any():
         detail += f"; in {100 * p.log.throttled.mean():.0f} % of the hours the pack is empty and sunlight alone decides"
     paid = f"{p.energy_balance_speed_m_s:.1f} m/s" if p.energy_balance_speed_m_s < 10 else "far more"
-    speed = f"{100 * p.cruise_speed_m_s:.1f} cm/s"
+    speed, key = f"{100 * p.cruise_speed_m_s:.1f} cm/s", max(gains, key=gains.get)
     sentences = {"hub speed": f"Hub speed binds: sunlight would pay for {paid}, the hub turns for {speed} at most.",
                  "sun": f"Sunlight binds: what the array yields above avionics and payload pays for {speed}.",
                  "battery": f"The battery binds: it falls to {100 * p.minimum_soc:.0f} %, and driving stops."}
@@ -136,9 +136,7 @@ def levers(design, scenario, performance, key, *, model=Model()):
     gains = getattr(_each_alone(design, scenario, model, more), metric) - getattr(performance, metric)
     if key == "torque":                                  # to spare: what the hub gives less what the wheel takes
         gains = np.array([more[n] - now[n] if n == "peak_wheel_torque_nm" else 0.0 for n in names]) - gains
-    words = {field: word for word, field in LEVERS.items()} | {"solar_area_m2": "array",
-                                                               "peak_wheel_torque_nm": "hub torque"}
-    rows = [(name, words.get(name, label(name)[0]), float(np.nan_to_num(gain)), label(metric)[1])
+    rows = [(name, label(name)[0], float(np.nan_to_num(gain)), label(metric)[1])
             for name, gain in zip(names, gains) if more[name] > now[name]]
     return sorted(rows, key=lambda lever: -lever[2])
 
@@ -209,14 +207,8 @@ def as_python(design, scenario, model, *calls, baseline=None):
     """
     rovers = {"design": design} | ({} if baseline is None else {"baseline": baseline})
     single(**rovers, scenario=scenario, model=model)
-    changed = {f.name: getattr(model, f.name) for f in dataclasses.fields(Model) if getattr(model, f.name) != f.default}
-    mission = {f.name: getattr(scenario, f.name) for f in dataclasses.fields(Scenario)
-               if f.name not in ("soil", "problem") and getattr(scenario, f.name) != f.default}
-    soil = {f.name: getattr(scenario.soil, f.name) for f in dataclasses.fields(Soil)}
-    parts = [_built(name, "Design", {n: getattr(rover, n) for n in DESIGN_SPACE}) for name, rover in rovers.items()]
-    parts += [_built("soil", "Soil", soil), _built("mission", "Scenario", mission, "    soil=soil,"),
-              _built("model", "Model", changed)]
-    return "\n".join(["import rdk", "", *parts, *calls, ""])
+    records = {**rovers, "soil": scenario.soil, "mission": scenario, "model": model}
+    return "\n".join(["import rdk", "", *(_built(*pair) for pair in records.items()), *calls, ""])
 
 
 def site_of(skyline):
@@ -226,14 +218,17 @@ def site_of(skyline):
     return (site, int(height)) if known and skyline == catalog.skyline(site, height) else None
 
 
-def _built(name, kind, values, *more):
-    """Source of `name = rdk.kind(...)`; infinity has no literal in Python, nor has a skyline."""
+def _built(name, record):
+    """Source of a record, without its defaults; infinity has no literal in Python, nor has a skyline."""
     def literal(value):
+        if isinstance(value, Soil):
+            return "soil"
         if isinstance(value, Skyline):
             if site := site_of(value):
                 return "rdk.skyline({!r}, {})".format(*site)
             return f"rdk.sky.Skyline({value.azimuth_deg.tolist()}, {value.elevation_deg.tolist()})"
         return f"float({str(value)!r})" if value in (np.inf, -np.inf) else repr(value)
 
-    lines = [f"    {field}={literal(value)}," for field, value in values.items()]
-    return "\n".join([f"{name} = rdk.{kind}(", *lines, *more, ")"]) if lines else f"{name} = rdk.{kind}()"
+    values = {f.name: (getattr(record, f.name), f.default) for f in dataclasses.fields(record) if f.name != "problem"}
+    lines = [f"\n    {field}={literal(value)}," for field, (value, default) in values.items() if value != default]
+    return f"{name} = rdk.{type(record).__name__}({''.join(lines)}" + "\n" * bool(lines) + ")"

@@ -61,15 +61,16 @@ def ticks(low, high, count=5, log=False):
 
 def path(xs, ys, close=""):
     """The data of a path through pixels."""
-    return "M" + "L".join(map("{:.1f} {:.1f}".format, xs.tolist(), ys.tolist())) + close
+    return "M" + ("%.1f %.1fL" * len(xs))[:-1] % tuple(np.stack([xs, ys], 1).ravel().tolist()) + close
 
 
-def seen(ys):
-    """Which points of a line can be seen: every so many, and those where it bends."""
-    kept = np.arange(len(ys)) % max(len(ys) // 200, 1) == 0
-    bend = np.abs(np.diff(ys, 2, prepend=ys[:1], append=ys[-1:])) > 0.4
-    kept |= bend | np.roll(bend, 1) | np.roll(bend, -1)
-    kept[[0, -1]] = True
+def seen(*lines):
+    """Which points of lines over the same xs can be seen: every so many, and those where one bends."""
+    kept = np.arange(len(lines[0])) % max(len(lines[0]) // 200, 1) == 0
+    for ys in lines if not kept.all() else ():
+        bend = np.abs(np.diff(ys, 2, prepend=ys[:1], append=ys[-1:])) > 0.4
+        kept |= bend | np.roll(bend, 1) | np.roll(bend, -1)
+    kept[-1] = True
     return kept
 
 
@@ -86,11 +87,14 @@ def sign(kind, cls, x, y, size=5, **more):
 class Axes:
     """A panel of a picture: data to pixels, the parts drawn so far, and the places taken by marks and names."""
 
-    def __init__(self, box, xs, ys, log=False):
-        self.box, self.xs, self.ys, self.log, self.parts, self.taken = box, xs, ys, log, [], []
+    def __init__(self, size, xs, ys, left=56, top=None, right=14, bottom=44, log=False):
+        if top is None:                                  # room for the legend beside the title or above it
+            top = 26 if size[0] > 500 else 44
+        self.size, self.box, self.xs, self.ys = size, (left, top, size[0] - right, size[1] - bottom), xs, ys
+        self.log, self.parts, self.taken = log, [], []
         low, high = map(math.log, xs) if log else xs
-        self.per_x, self.per_y = (box[2] - box[0]) / (high - low), (box[3] - box[1]) / (ys[1] - ys[0])
-        self.left = box[0] - self.per_x * low
+        self.per_x, self.per_y = (self.box[2] - left) / (high - low), (self.box[3] - top) / (ys[1] - ys[0])
+        self.left = left - self.per_x * low
 
     def x(self, value):
         """Pixels from the left."""
@@ -123,7 +127,8 @@ class Axes:
     def line(self, xs, ys, cls="c0", **more):
         """A line through points that breaks where there is none."""
         px, py = np.broadcast_arrays(self.x(xs), self.y(ys))
-        px, py = px[seen(py)], py[seen(py)]
+        kept = seen(py)
+        px, py = px[kept], py[kept]
         turns = np.flatnonzero(np.diff(np.isfinite(py))) + 1
         runs = [path(*run) for run in zip(np.split(px, turns), np.split(py, turns)) if np.isfinite(run[1][0])]
         self.add("path", "l " + cls, d="".join(runs), **more)
@@ -131,7 +136,8 @@ class Axes:
     def area(self, xs, low, high, cls="f0", opacity=0.18):
         """A band between two lines."""
         px, low, high = np.broadcast_arrays(self.x(xs), self.y(low), self.y(high))
-        px, low, high = (values[seen(high) | seen(low)] for values in (px, low, high))
+        kept = seen(low, high)
+        px, low, high = px[kept], low[kept], high[kept]
         self.add("path", cls, d=path(np.append(px, px[::-1]), np.append(high, low[::-1]), "Z"), opacity=opacity)
 
     def stretches(self, edges, flags, **look):
@@ -174,8 +180,9 @@ class Axes:
             self.say(x + 18, y1 - k * tall + 4, f"{low + k * (high - low) / 10:.3g}", "q s")
         self.say(x + 70, self.box[1] - 4, words, "s e")
 
-    def __str__(self):
-        return "".join(self.parts)
+    def picture(self, words, role="img"):
+        """The SVG element with all parts, and the words that go with it."""
+        return svg(*self.size, "".join(self.parts), words, role)
 
 
 def bars(size, top, rows, below, zero=False, joined=False):
@@ -183,10 +190,9 @@ def bars(size, top, rows, below, zero=False, joined=False):
 
     A row is (name, start, end, words, marks); marks are (letter, class, value), one below the other.
     """
-    width, height = size
-    left, tall = 72 + LETTER * max(len(row[0]) for row in rows), (height - 44 - top) / max(len(rows), 4)
+    left, tall = 72 + LETTER * max(len(row[0]) for row in rows), (size[1] - 44 - top) / max(len(rows), 4)
     reach = [value for _, *ends, _, marks in rows for value in (*ends, *(value for *_, value in marks))]
-    axes = Axes((left, top, width - 20, height - 44), span(reach, zero=zero), (0, 1))
+    axes = Axes(size, span(reach, zero=zero), (0, 1), left, top, 20)
     axes.frame(below=below, count=0)
     for k, (name, *ends, words, marks) in enumerate(rows):
         y, (a, b) = top + k * tall, map(axes.x, ends)
@@ -205,10 +211,9 @@ def bars(size, top, rows, below, zero=False, joined=False):
 
 def message(size, words):
     """A picture of words alone."""
-    width, height = size
-    lines = textwrap.wrap(words, max(int(width / 7.5), 20))
-    return svg(width, height, "".join(text(width / 2, height / 2 + 16 * k - 8 * len(lines), line, "m")
-                                      for k, line in enumerate(lines)), words)
+    lines = textwrap.wrap(words, max(int(size[0] / 7.5), 20))
+    return svg(*size, "".join(text(size[0] / 2, size[1] / 2 + 16 * k - 8 * len(lines), line, "m")
+                              for k, line in enumerate(lines)), words)
 
 
 def log(result, scenario, soc_initial=1.0, size=SIZE, ghosts=()):
@@ -219,7 +224,7 @@ def log(result, scenario, soc_initial=1.0, size=SIZE, ghosts=()):
     ends = max(far, 0.01, *(float(other.distance_km[-1]) for *_, other in ghosts))
     top = 1.08 * max(ends, limit if limit <= 4 * ends else 0, 0.05)
     power, charge, distance = panels = [
-        Axes((44, 24 + k * third, width - 62, third * (k + 1) - 2), (0, days[-1]), ys)
+        Axes(size, (0, days[-1]), ys, 44, 24 + k * third, 62, height + 2 - third * (k + 1))
         for k, ys in enumerate((span(log.solar_w, log.load_w, zero=True), (0, 105), (0, top)))]
     dark, word = log.lit_fraction < 0.5, "night" if scenario.skyline is None else "sun hidden"
     shaded = f"shaded: {word}" * bool(dark.any())
@@ -247,10 +252,10 @@ def log(result, scenario, soc_initial=1.0, size=SIZE, ghosts=()):
         distance.line(hours, np.insert(other.distance_km, 0, 0), f"t {cls}" if cls else "c2", **look)
         distance.name(days[-1], other.distance_km[-1], name, f"s b f{cls[1:]}", (1,))
     hidden = f" {word.capitalize()} in {100 * dark.mean():.0f} % of the time, shaded." if shaded else ""
-    return svg(width, height, "".join(map(str, panels)), f"Three charts over {days[-1]:.0f} Earth days. Sunlight "
-               f"reaches {peak:.0f} W against a load of up to {load.max():.0f} W.{hidden} Charge falls to "
-               f"{100 * result.minimum_soc:.0f} % and ends at {100 * result.final_soc:.0f} %. Distance reaches "
-               f"{result.range_km:.2f} km.")
+    power.parts += charge.parts + distance.parts
+    return power.picture(f"Three charts over {days[-1]:.0f} Earth days. Sunlight reaches {peak:.0f} W against a load "
+                         f"of up to {load.max():.0f} W.{hidden} Charge falls to {100 * result.minimum_soc:.0f} % and "
+                         f"ends at {100 * result.final_soc:.0f} %. Distance reaches {result.range_km:.2f} km.")
 
 
 def mass(result, size=SIZE, spans=None, ghosts=()):
@@ -262,58 +267,58 @@ def mass(result, size=SIZE, spans=None, ghosts=()):
     said = f"{result.total_mass_kg:.2f} kg in all"
     said += "" if spans is None else f", 90 % of draws {spans[0]:.1f} to {spans[1]:.1f}"
     axes.say(8, 14, said, "b")
-    return svg(*size, str(axes), f"Bars of mass line items: {said}; the largest is {rows[0][0]} with {rows[0][3]} kg.")
+    return axes.picture(f"Bars of mass line items: {said}; the largest is {rows[0][0]} with {rows[0][3]} kg.")
 
 
 def wheel(result, design, scenario, model, size=SIZE):
     """The wheel in its soil, and its stresses along the contact at the slip balance."""
     width, height = size
-    narrow, half = width < 460, round(0.52 * height)      # then one above the other
+    narrow, half = width < 460, round(0.52 * height)     # then one above the other
     part, tall = (width, half) if narrow else (round(0.45 * width), height - 20)
-    drawn = wheel_picture(design, result, scenario, model=model, width=part, height=tall)
+    stress = None if result.buried else contact(design, result, scenario, model, 65)
+    drawn = wheel_picture(design, result, scenario, model=model, width=part, height=tall, stress=stress)
     if result.buried:
         return svg(width, height, drawn, alt(drawn))
-    _, angle, normal, shear = contact(design, result, scenario, model, 61)
-    angle = np.degrees(angle)
-    axes = Axes((44, half + 26, width - 14, height - 44) if narrow else (part + 44, 24, width - 14, height - 44),
-                (0, 1.02 * angle[-1]), span(normal, shear, zero=True, room=0.12))
+    angle, (normal, shear) = np.degrees(stress[1]), stress[2:]
+    axes = Axes(size, (0, 1.02 * angle[-1]), span(normal, shear, zero=True, room=0.12),
+                *((44, half + 26) if narrow else (part + 44, 24)))
+    axes.parts.append(drawn)
     axes.frame("Stress", "kPa", "angle ahead of the lowest point (°)")
     for values, cls, name, dashes in ((normal, "0", "normal", "none"), (shear, "1", "shear", "7 3")):
         axes.line(angle, values, "c" + cls, stroke_dasharray=dashes)
         top = int(np.abs(values).argmax())
         axes.say(axes.x(angle[top]), axes.y(values[top]) - 6, name, "s b m h f" + cls)
-    return svg(width, height, drawn + str(axes), alt(drawn))
+    return axes.picture(alt(drawn))
 
 
 def fleet(result, rovers, size=SIZE, spans=None, ghosts=()):
     """Range against mass: this design, with its intervals, among published rovers on the same mission."""
-    width, height = size
     masses, ranges, names = (np.asarray(v) for v in rovers)
     order = {}
     for m, r, n in zip(masses.round(6).tolist(), ranges.round(6).tolist(), names.tolist()):
         order.setdefault((m, r), []).append(n)           # rovers at one place share a name
-    (x0, x1), (y0, y1) = spans or [(result.total_mass_kg,) * 2, (result.range_km,) * 2]
-    others = [other for *_, other in ghosts]
-    across = [*masses, x0, x1, result.total_mass_kg, *(other.total_mass_kg for other in others)]
-    up = span(ranges, [y0, y1, result.range_km], [other.range_km for other in others], zero=True, room=0.1)
-    axes = Axes((50, 26 if width > 460 else 44, width - 14, height - 44), (0.8 * min(across), 1.3 * max(across)), up,
-                log=True)
+    here = result.total_mass_kg, result.range_km
+    (x0, x1), (y0, y1) = spans or ((value, value) for value in here)
+    others = [(name, cls, (other.total_mass_kg, other.range_km)) for name, cls, other in ghosts]
+    across = [*masses, x0, x1, here[0], *(at[0] for *_, at in others)]
+    up = span(ranges, [y0, y1, here[1], *(at[1] for *_, at in others)], zero=True, room=0.1)
+    axes = Axes(size, (0.8 * min(across), 1.3 * max(across)), up, 50, log=True)
     axes.frame("Range", "km", "mass (kg), logarithmic")
-    axes.add("path", "l c0 t", d=f"M{axes.x(x0):.1f} {axes.y(result.range_km):.1f}H{axes.x(x1):.1f}"
-                                 f"M{axes.x(result.total_mass_kg):.1f} {axes.y(y0):.1f}V{axes.y(y1):.1f}")
+    axes.add("path", "l c0 t", d=f"M{axes.x(x0):.1f} {axes.y(here[1]):.1f}H{axes.x(x1):.1f}M{axes.x(here[0]):.1f} "
+                                 f"{axes.y(y0):.1f}V{axes.y(y1):.1f}")
     for m, r in order:
         axes.mark(m, r, "square", "f1", 4)
-    for _, cls, other in ghosts:
-        axes.mark(other.total_mass_kg, other.range_km, cls="l " + cls, size=6)
-    axes.mark(result.total_mass_kg, result.range_km, size=6)
-    for name, cls, other in ghosts:
-        axes.name(other.total_mass_kg, other.range_km, name, "s b f" + cls[1])
-    for (m, r), found in order.items():
-        axes.name(m, r, ", ".join(found))
+    for _, cls, at in others:
+        axes.mark(*at, cls="l " + cls, size=6)
+    axes.mark(*here, size=6)
+    for name, cls, at in others:
+        axes.name(*at, name, "s b f" + cls[1])
+    for at, found in order.items():
+        axes.name(*at, ", ".join(found))
     axes.legend(("this design", "dot", "f0"), ("published rovers", "square", "f1", {"size": 4}))
     rest = ", ".join(f"{n} {r:.1f} km" for n, r in zip(names, ranges))
-    return svg(width, height, str(axes), f"Range against mass: this design reaches {result.range_km:.2f} km with "
-               f"{result.total_mass_kg:.1f} kg; on the same mission {rest}.")
+    return axes.picture(f"Range against mass: this design reaches {result.range_km:.2f} km with "
+                        f"{result.total_mass_kg:.1f} kg; on the same mission {rest}.")
 
 
 def why(metric, names, values, before, after, baseline, size=SIZE):
@@ -336,17 +341,15 @@ def why(metric, names, values, before, after, baseline, size=SIZE):
     axes.say(8, 14, said if 7 * len(said) < size[0] else f"{words}: from {before:.4g} to {after:.4g} {unit}", "b")
     axes.parts += (sign("square", "f0", 14, 26, 4), text(22, 30, "more", "s"), sign("square", "l c1", 66, 26, 4),
                    text(74, 30, "less, open, to the left", "s"))
-    return svg(*size, str(axes), f"Steps from {before:.4g} ({baseline}) to {after:.4g} in {named(metric)}: "
-               + "; ".join(f"{name} {step:+.3g}" for name, step in steps) + ".")
+    return axes.picture(f"Steps from {before:.4g} ({baseline}) to {after:.4g} in {named(metric)}: "
+                        + "; ".join(f"{name} {step:+.3g}" for name, step in steps) + ".")
 
 
 def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, size=SIZE, log=False):
     """One metric along one variable, with its interval (where, low, high), this design, and the published rovers."""
-    width, height = size
     if not np.isfinite(nominal).any():
         return message(size, f"{label(metric)[0]} has no value at any {x_label}: the wheel is buried")
-    axes = Axes((56, 26 if width > 500 else 44, width - 14, height - 44), (float(values[0]), float(values[-1])),
-                span(nominal, *band[1:], here[1]), log)
+    axes = Axes(size, (float(values[0]), float(values[-1])), span(nominal, *band[1:], here[1]), log=log)
     axes.parts.append(HATCH)
     axes.stretches(np.concatenate([values[:1], (values[1:] + values[:-1]) / 2, values[-1:]]), stalled, **HATCHED)
     axes.frame(*label(metric), x_label)
@@ -362,16 +365,15 @@ def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, si
         axes.name(*point)
     stalls = [("cannot drive", "square", "", HATCHED)] if np.any(stalled) else []
     axes.legend(("this design", "dot", "f3"), ("90 % of draws", "square", "f0", {"opacity": 0.3}), *stalls)
-    return svg(width, height, str(axes), f"{named(metric)} against {x_label}: from {nominal[0]:.3g} at {values[0]:.3g} "
-               f"to {nominal[-1]:.3g} at {values[-1]:.3g}; this design has {here[1]:.3g} at {here[0]:.3g}."
-               .replace("nan", "no value"))
+    return axes.picture(f"{named(metric)} against {x_label}: from {nominal[0]:.3g} at {values[0]:.3g} to "
+                        f"{nominal[-1]:.3g} at {values[-1]:.3g}; this design has {here[1]:.3g} at {here[0]:.3g}."
+                        .replace("nan", "no value"))
 
 
 def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
     """One metric over two variables: shades, labelled contours, hatching where the rover cannot drive, this design."""
     from contourpy import contour_generator
-    width, height = size
-    axes = Axes((56, 42, width - 86, height - 44), (float(xs[0]), float(xs[-1])), (float(ys[0]), float(ys[-1])))
+    axes = Axes(size, (float(xs[0]), float(xs[-1])), (float(ys[0]), float(ys[-1])), top=42, right=86)
     low, high = span(grid, room=0)
     field, edges = contour_generator(xs, ys, np.where(np.isfinite(grid), grid, np.nan).T), np.linspace(low, high, 11)
     outer = edges + np.r_[-1, np.zeros(9), 1] * 1e-9 * max(abs(low), abs(high), 1)
@@ -400,9 +402,9 @@ def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
                          style="fill:#fff;stroke:#0008;stroke-width:2.5;paint-order:stroke")
     axes.mark(*here, cls="", size=6, fill="#fff", stroke="#000", stroke_width=2)
     axes.scale(low, high, "")
-    axes.say(width - 4, 14, named(metric) + ", hatched: cannot drive" * bool(stalled.any()), "s b e")
-    return svg(width, height, str(axes), f"Map of {named(metric)} over {x_label} and {y_label}: from "
-               f"{np.nanmin(grid):.3g} to {np.nanmax(grid):.3g}; the circle marks this design.")
+    axes.say(size[0] - 4, 14, named(metric) + ", hatched: cannot drive" * bool(stalled.any()), "s b e")
+    return axes.picture(f"Map of {named(metric)} over {x_label} and {y_label}: from {np.nanmin(grid):.3g} to "
+                        f"{np.nanmax(grid):.3g}; the circle marks this design.")
 
 
 def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="", stale="", ghosts=(), designs=None):
@@ -411,12 +413,11 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
     `faded` marks dots that miss a demand, `stale` says that the front belongs to another mission; `designs` are told
     with the dots. The scale of the metric "odds" is 0 to 1.
     """
-    width, height = size
     if not len(x):
         return message(size, f"{title}: an empty front, no design meets the constraints.")
     others = [(name, cls, [float(getattr(other, field)) for field in names[:2]]) for name, cls, other in ghosts]
-    axes = Axes((54, 62 if stale else 44, width - 86, height - 44),
-                *(span(values, here[i], [at[i] for *_, at in others]) for i, values in enumerate((x, y))))
+    axes = Axes(size, *(span(values, here[i], [at[i] for *_, at in others]) for i, values in enumerate((x, y))),
+                top=62 if stale else 44, right=86)
     axes.frame(*label(names[1]), named(names[0]), count=5)
     low, high = (0.0, 1.0) if names[2] == "odds" else span(colour, room=0)
     columns = [(*label(name), values.tolist()) for name, values in zip(names, (x, y, colour))]
@@ -435,8 +436,7 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
     axes.mark(*here[:2], "cross", "l c1", 6)
     axes.name(*here[:2], "this design", "s b")
     axes.scale(low, high, label(names[2])[0])
-    body = element("g", "", str(axes), opacity=0.45 if stale else 1)
-    body += text(8, 14, title, "b" if 7.5 * len(title) < width else "s b") + text(8, 30, stale, "bad s")
+    axes.parts = [element("g", "", "".join(axes.parts), opacity=0.45 if stale else 1), text(8, 30, stale, "bad s"),
+                  text(8, 14, title, "b" if 7.5 * len(title) < size[0] else "s b")]
     spans = ", ".join(f"{named(n)} from {min(v):.3g} to {max(v):.3g}" for n, v in zip(names, (x, y, colour)))
-    return svg(width, height, body, f"{title}. Front of {len(x)} designs: {spans}." + (f" {stale}" if stale else ""),
-               "group")
+    return axes.picture(f"{title}. Front of {len(x)} designs: {spans}. {stale}".rstrip(), "group")

@@ -123,15 +123,15 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
 
     Parameters
     ----------
-    title, notes : str
-        The notes say what to know beyond the tables: choices, risks, doubts; an empty line starts a paragraph.
+    notes : str
+        What to know beyond the tables: choices, risks, doubts; an empty line starts a paragraph.
     front : Front, optional
-        Shown with the design on it; without one, the published rovers are shown on this mission.
+        Shown with the design on it; without one, the published rovers are shown.
     baseline : Design, optional
-        Whose difference to the design, in the metric `why`, is attributed to the variables; by default the published
-        rover that is nearest in mass on this mission.
+        Whose difference in the metric `why` is attributed to the variables; by default the published rover that is
+        nearest in mass.
     bounds : dict of str to (float, float), optional
-        Limits of design variables that the project sets, in place of those in DESIGN_SPACE.
+        Limits of design variables in place of those in DESIGN_SPACE.
     candidates : dict of str to Design, optional
         Other designs, shown beside this one.
 

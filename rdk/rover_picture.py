@@ -23,8 +23,6 @@ STYLE = """
 .rdk-svg .soil{fill:var(--rdk-soil,#e4e0da)}.rdk-svg .bad{stroke:var(--rdk-red,#b42318);stroke-width:2.6}
 .rdk-svg text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}"""
 """Styles of every SVG of the collection; a page may set the variables, as the explorer does for dark themes."""
-DENSITY_KG_M3 = 145.0                                    # of a rover's envelope: sizes the sketched body
-TRACK_RATIO = 0.9                                        # of track to wheelbase
 A4_M = 0.21, 0.297
 
 
@@ -61,8 +59,8 @@ def rover_picture(design, performance=None, scenario=None, *, width=300):
     sunk = 0.0 if p is None else r / 2 if p.buried else max(p.sinkage_m, 0.0)
     bad = failing(design, p, scenario) if known else {}
     tone = {part: " bad" * (part in bad) for part in ("wheels", "hubs", "array", "body", "obstacle")}
-    side, depth = np.sqrt(design.solar_area_m2), TRACK_RATIO * base
-    length, tall = max(base * 0.96, 0.2), float(np.clip(0.4 * np.cbrt(mass / DENSITY_KG_M3), 0.07, 0.45))
+    side, depth = np.sqrt(design.solar_area_m2), Model.track_ratio * base
+    length, tall = max(base * 0.96, 0.2), float(np.clip(0.4 * np.cbrt(mass / Model.envelope_density_kg_m3), 0.07, 0.45))
     floor = 1.25 * r - sunk
     roof = floor + tall
     sin, cos, lean = np.sin(np.radians(slope)), np.cos(np.radians(slope)), np.radians(tilt)
@@ -93,8 +91,8 @@ def rover_picture(design, performance=None, scenario=None, *, width=300):
     parts += [_wheel(design, x, r - sunk, (4.5 if tone["hubs"] else 3.0) / scale, tone) for x in wheels.tolist()]
     parts.append(box("o" + tone["body"], -length / 2, floor, length, tall, rx=4 / scale))
     if p is not None:                                    # boxes as large as their share of the mass
-        for cls, name, kg, at in (("f0", "battery", p.mass.battery_kg, -0.46), ("f2", "payload", p.mass.payload_kg,
-                                                                                0.06)):
+        for cls, name, at in ("f0", "battery", -0.46), ("f2", "payload", 0.06):
+            kg = getattr(p.mass, name + "_kg")
             high = 0.8 * tall * float(np.clip(np.sqrt(kg / mass), 0.12, 0.7)) * (kg > 0)
             parts.append(box(cls, length * at, floor + 0.08 * tall, length * 0.4, high,
                              f"<title>{name} {kg:.2f} kg</title>", opacity=0.75))
@@ -134,17 +132,21 @@ def _wheel(design, x, z, hub, tone):
             + element("circle", "f3" + tone["hubs"], cx=x, cy=z, r=hub))
 
 
-def wheel_picture(design, performance, scenario, *, model=Model(), width=300, height=260):
-    """The wheel of a single rover in its soil at the slip balance, stresses as arrows, as an SVG element's text."""
+def wheel_picture(design, performance, scenario, *, model=Model(), width=300, height=260, stress=None):
+    """The wheel of a single rover in its soil at the slip balance, stresses as arrows, as an SVG element's text.
+
+    `stress` is what `contact` returns, where that is known.
+    """
     r, p, ground = design.wheel_radius_m, performance, height * 0.66
     scale = min(width * 0.84, height * 0.66) / (2 * (r + design.grouser_height_m))
     z = r - (r if p.buried else p.sinkage_m)
     body = _wheel(design, 0.0, z, 3 / scale, {"wheels": "", "hubs": ""})
     if p.buried:
-        notes, words = text(width / 2, 18, "buried: no contact carries the load", "m bad"), ""
+        notes = text(width / 2, 18, "buried: no contact carries the load", "m bad")
         words = "The wheel is buried: no contact carries the load."
     else:
-        entry, angle, normal, shear = contact(design, p, scenario, model, 9)
+        entry, *along = stress or contact(design, p, scenario, model, 9)
+        angle, normal, shear = (values[::len(values) // 8] for values in along)
         longest = (0.34 * height - 34) / scale / max(np.abs(normal).max(), np.abs(shear).max(), 1e-9)
         sin, cos = np.sin(angle), np.cos(angle)          # pressed into the soil; shear drags it backwards
         for cls, dx, dz in (("l c0", sin * normal, -cos * normal), ("l c1", -cos * shear, -sin * shear)):
@@ -154,8 +156,8 @@ def wheel_picture(design, performance, scenario, *, model=Model(), width=300, he
                          'class="f1 b">shear</tspan> along it', x=6, y=height - 20)
                  + text(6, height - 6, f"sinkage {1000 * p.sinkage_m:.1f} mm, slip {p.slip:.2f}", "s q"))
         words = (f"Wheel of {1000 * r:.0f} mm radius, {1000 * p.sinkage_m:.1f} mm deep, in contact over "
-                 f"{np.degrees(entry):.0f} degrees; normal stress up to {normal.max():.1f} kPa, shear to "
-                 f"{shear.max():.1f} kPa.")
+                 f"{np.degrees(entry):.0f} degrees; normal stress up to {along[1].max():.1f} kPa, shear to "
+                 f"{along[2].max():.1f} kPa.")
     soil = element("rect", "soil", x=0, y=ground, width=width, height=height - ground)
     wheel = element("g", "d", body, transform=f"translate({width / 2} {ground:.1f}) scale({scale:.2f} {-scale:.2f})")
     return svg(width, height, soil + wheel + notes, words)

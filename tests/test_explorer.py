@@ -1047,7 +1047,7 @@ def test_axes_have_round_ticks_and_survive_single_values():
 
 
 def test_a_line_keeps_its_ends_its_cliffs_and_breaks_where_there_is_no_value():
-    axes = pictures.Axes((0, 0, 600, 100), (0, 1), (0, 1))
+    axes = pictures.Axes((600, 100), (0, 1), (0, 1), 0, 0, 0, 0)
     x = np.linspace(0, 1, 1001)
     axes.line(x, np.where(x < 0.5003, 1.0, 0.0))
     points = np.array(re.findall(r"[ML]([\d.]+) ([\d.]+)", axes.parts[0]), float)

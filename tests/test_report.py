@@ -318,7 +318,7 @@ def test_each_dot_of_a_front_tells_its_design_and_odds_have_a_scale_from_0_to_1(
 
 
 def test_names_cover_neither_marks_nor_each_other():
-    axes = pictures.Axes((50, 20, 550, 300), (0, 1), (0, 1))
+    axes = pictures.Axes((600, 380), (0, 1), (0, 1), 50, 20, 50)
     points = np.random.default_rng(3).random((12, 2)) * 0.9
     for point in points:
         axes.mark(*point)
