@@ -21,8 +21,10 @@ STYLE = """
 .rdk-svg .h{paint-order:stroke;stroke:var(--rdk-card,#fff);stroke-width:3px;stroke-linejoin:round}
 .rdk-svg .o{stroke:currentColor;stroke-width:1.6;fill:var(--rdk-part,#e6ebf2)}
 .rdk-svg .soil{fill:var(--rdk-soil,#e4e0da)}.rdk-svg .bad{stroke:var(--rdk-red,#b42318);stroke-width:2.6}
-.rdk-svg text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}"""
-"""Styles of every SVG of the collection; a page may set the variables, as the explorer does for dark themes."""
+.rdk-svg text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}:root.rdk-svg{background:#fff}"""
+"""Styles of every SVG of the collection; a page may set the variables, as the explorer does for dark themes.
+
+A picture that stands alone, such as a notebook's output, knows nothing of its page and brings a white ground."""
 A4_M = 0.21, 0.297
 
 
@@ -45,11 +47,12 @@ def svg(width, height, body, words, role="img"):
                    aria_label=html.escape(words))
 
 
-def rover_picture(design, performance=None, scenario=None, *, width=300):
+def rover_picture(design, performance=None, scenario=None, *, width=300, scale=None):
     """A single rover from the side and from above, as the text of an SVG element; show it by `IPython.display.SVG`.
 
     Wheels, grousers, wheelbase, array, sinkage, slope and tilt are to scale; the body is sketched from the mass. With
     `performance` the wheels sink, with `scenario` the rover stands on its slope, with both what fails is marked.
+    `scale` is in pixels for a metre, for rovers side by side; else the rover fills the width.
     """
     p, known = performance, performance is not None and scenario is not None
     slope, tilt, obstacle = (0.0,) * 3 if scenario is None else map(float, (
@@ -64,7 +67,7 @@ def rover_picture(design, performance=None, scenario=None, *, width=300):
     floor = 1.25 * r - sunk
     roof = floor + tall
     sin, cos, lean = np.sin(np.radians(slope)), np.cos(np.radians(slope)), np.radians(tilt)
-    middle, reach = roof + 0.03 + side / 2 * np.sin(lean), base / 2 + r + rib        # height of the array's centre
+    reach, middle = base / 2 + r + rib, roof + 0.03 + side / 2 * abs(np.sin(np.radians(tilt - slope)))    # of the array
     # sizes in the world, whose level the array's tilt refers to; the rest is drawn on the slope
     corners = [(x * cos - z * sin, x * sin + z * cos) for x in (-reach - 0.03, reach + 0.03)
                for z in (-sunk - rib - 0.02, 2 * r, roof)]
@@ -72,7 +75,7 @@ def rover_picture(design, performance=None, scenario=None, *, width=300):
             for way in (-1, 1)]
     xs, zs = np.array(corners + tips).T
     above = max(depth + b, side * np.cos(lean), 0.3)
-    scale = float(min((width - 66) / np.ptp(xs), 210 / np.ptp(zs), 130 / above))
+    scale = scale or float(min((width - 66) / np.ptp(xs), 210 / np.ptp(zs), 130 / above))
     left, level = (width - 46 - scale * np.ptp(xs)) / 2 - scale * xs.min(), 24 + scale * zs.max()
     height = level - scale * zs.min() + 8
 
@@ -112,11 +115,11 @@ def rover_picture(design, performance=None, scenario=None, *, width=300):
     plan = element("g", "d", plan, transform=f"translate({width / 2} {centre:.1f}) scale({scale:.2f})")
     end = max(centre + scale * max(above, side) / 2, top + 20) + 18
     notes = [text(4, 14, f"side, on {slope:g}°", "q s b"), text(width - 14, 40 + scale * A4_M[1], "A4", "q s e"),
-             text(4, top + 4, f"top, wheelbase {base:g} m", "q s b"),
+             text(4, top + 4, f"top, wheelbase {base:.3g} m", "q s b"),
              text(width / 2, centre + 4, f"array {design.solar_area_m2:.3g} m²", "m s"),
              *(text(width / 2, end + 13 * k, said, "bad s m") for k, said in enumerate(bad.values()))]
     words = (f"Rover to scale: {design.wheel_count} wheels of {1000 * r:.0f} mm radius and {1000 * b:.0f} mm width, "
-             f"wheelbase {base:g} m, on a slope of {slope:g} degrees, array of {design.solar_area_m2:.3g} m2 tilted "
+             f"wheelbase {base:.3g} m, on a slope of {slope:g} degrees, array of {design.solar_area_m2:.3g} m2 tilted "
              f"{tilt:g} degrees" + ("" if p is None or p.buried else f", wheels {1000 * sunk:.0f} mm deep")
              + (f". Marked: {'; '.join(bad.values())}" if bad else "") + ".")
     return svg(width, round(end + 13 * max(len(bad) - 1, 0) + 6), scene + sheet + plan + "".join(notes), words)

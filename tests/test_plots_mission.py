@@ -207,6 +207,6 @@ def test_rovers_side_by_side_are_on_one_scale_and_have_words():
     drawn = plots.rovers({"small": (RASHID, rdk.evaluate(RASHID, POLAR)), "large": (large, rdk.evaluate(large, POLAR))},
                          POLAR)
     radius = [float(r) for r in re.findall(r'<circle class="o" [^>]* r="([^"]*)"', drawn.data)]
-    assert len(radius) == 4
-    np.testing.assert_allclose(radius[2] / radius[0], 1.5, rtol=5e-3)    # drawn to 0.1 px
+    assert radius == [0.1, 0.1, 0.15, 0.15]              # in metres
+    assert len(set(re.findall(r"scale\(([\d.]+) -", drawn.data))) == 1
     assert re.search("small: .* 100 mm radius.* large: .*Marked: hubs too weak", repr(drawn))
