@@ -271,6 +271,7 @@ def test_search_and_pick_by_pointer_and_by_keyboard(explorer):
     expect(explorer.locator('[data-text="status"]')).to_contain_text(re.compile(r"generation \d+ of 1000"))
     button(explorer, "Cancel").click()
     expect(explorer.locator('[data-text="status"]')).to_contain_text("stopped after generation")
+    explorer.locator(".rdk-views .rdk-more").evaluate("e => e.open = true")      # a press elsewhere folded it away
     for name, value in ("population", "20"), ("generations", "6"):
         box(explorer, name).fill(value)
         box(explorer, name).press("Enter")

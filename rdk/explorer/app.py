@@ -32,7 +32,7 @@ from .worker import Refresher
 
 LIVE = 40, 24                                            # population and generations of a live front from nothing
 SLOW = "why", "sweep", "optimise"                        # views whose picture may come after the readings
-WIDE = 1150                                              # pixels from which a second picture stands beside the first
+WIDE = 1000                                              # pixels from which a second picture stands beside the first
 
 
 class Explorer(State):
@@ -311,8 +311,8 @@ class Explorer(State):
         for (letter, _, other), (name, _) in zip(self._ghosts(scenario, model), self._pins):
             parts = [(other.total_mass_kg - result.total_mass_kg, "kg"), (other.range_km - result.range_km, "km"),
                      (other.slope_capability_deg - result.slope_capability_deg, "°")]
-            pins.append((letter, name, " · ".join(f"{v:+.1f} {unit}".replace("-", "−") for v, unit in parts)
-                         + " against now"))
+            pins.append((letter, name, " · ".join(f"{round(v, 1) + 0.0:+.1f} {unit}".replace("-", "−")
+                                                  for v, unit in parts)))
         self.parts["tray"].value = page.tray(pins, [colour for *_, colour in PINS])
 
     def _differences(self):

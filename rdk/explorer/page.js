@@ -1,7 +1,7 @@
 (root => {
 if (root.dataset.alive) return; root.dataset.alive = 1;
 const one = q => root.querySelector(q), all = q => [...root.querySelectorAll(q)], app = !!one('[data-app]');
-let last = 0, acked = 0, queue = [], timer, seen = '', size = '', pressed = '', tab = '', view = '', link, naming = 0;
+let last = 0, acked = 0, queue = [], tab = 'rover', timer, seen, size, pressed, link, naming, unfolded;
 const send = (...event) => {
     queue = queue.filter(e => e[0] > acked); const before = queue.at(-1);        /* only a drag's way is forgotten */
     if (before && event[0] === 'slide' && before[1] === 'slide' && before[2] === event[1]) queue.pop();
@@ -11,8 +11,9 @@ const send = (...event) => {
     box.dispatchEvent(new Event('input', {bubbles: true})); box.dispatchEvent(new Event('change', {bubbles: true}));
     clearTimeout(timer); timer = setTimeout(() => root.classList.add('rdk-lost'), 8000);
 };
-const pages = () => all('[data-tab]').forEach(t => { const on = t.dataset.tab === (tab || 'rover');
-    t.setAttribute('aria-selected', on); t.tabIndex = on ? 0 : -1; one(`[data-page=${t.dataset.tab}]`).hidden = !on; });
+const choose = (kind, name) => all(`[data-${kind}]`).forEach(t => { const on = t.dataset[kind] === name;
+    t.setAttribute('aria-selected', on); t.tabIndex = on ? 0 : -1; });
+const pages = () => { choose('tab', tab); all('[data-page]').forEach(p => p.hidden = p.dataset.page !== tab); };
 const put = (box, words) => { if (!box.dataset.typing) box.value = words; };          /* what is being typed stays */
 const apply = () => {
     const holder = one('.rdk-data [data-state]'); if (!holder || holder.dataset.state === seen) return;
@@ -22,21 +23,20 @@ const apply = () => {
         for (const [name, [at, words, tick, moved]] of Object.entries(d.v)) {
             const range = one(`[type=range][data-in=${name}]`), box = one(`.rdk-box[data-in=${name}]`);
             range.value = at; range.setAttribute('aria-valuetext', words + ' ' + range.dataset.unit); put(box, words);
-            range.previousSibling.style.setProperty('--at', tick); one(`[data-do="reset:${name}"]`).style.visibility =
-                moved ? '' : 'hidden';
+            range.previousSibling.style.setProperty('--at', tick);
+            one(`[data-do="reset:${name}"]`).style.visibility = moved ? '' : 'hidden';
         }
         for (const [name, value] of Object.entries(d.c)) {
             all(`:is(select, .rdk-box)[data-in=${name}]`).forEach(s => put(s, value));
             all(`[data-name=${name}]`).forEach(b => b.setAttribute('aria-pressed', b.dataset.value === value));
         }
-        all('[data-view]').forEach(t => { const on = t.dataset.view === d.c.view; t.setAttribute('aria-selected', on);
-            t.tabIndex = on ? 0 : -1; });
+        choose('view', d.c.view);
         all('[data-for]').forEach(p => p.hidden = p.dataset.for !== d.c.view);
         all('button[data-do]').forEach(b => { if (b.dataset.do in d.off) b.disabled = d.off[b.dataset.do]; });
     }
     for (const [key, words] of Object.entries(d.t)) all(`[data-text=${key}]`).forEach(e => e.textContent = words);
     one('.rdk-picture').classList.toggle('rdk-waiting', d.busy || acked < last);
-    if (d.c.view !== view) { view = d.c.view; setTimeout(measure, 60); }
+    setTimeout(measure, 60);                             /* the room for the picture may have changed */
     const bar = one('progress'); bar.max = d.p[1]; bar.value = d.p[0]; bar.hidden = !d.p[2];
     if (app) { link = d.link; naming ||= setTimeout(name, 100); }       /* browsers ignore calls that come faster */
 };
@@ -44,8 +44,9 @@ const name = () => { naming = 0; history.replaceState(null, '', location.pathnam
 const deliver = () => { const a = one('a[data-deliver]'); if (a) { a.removeAttribute('data-deliver'); a.click(); } };
 const copy = text => (navigator.clipboard ? navigator.clipboard.writeText(text) : Promise.reject()).catch(() => {
     const box = document.createElement('textarea'); box.value = text; document.body.append(box); box.select();
-        document.execCommand('copy'); box.remove(); });
+    document.execCommand('copy'); box.remove(); });
 new MutationObserver(() => { apply(); deliver();
+    const readings = one('.rdk-verdict details'); if (readings && unfolded) readings.open = true;
     if (pressed && document.activeElement === document.body) { const again = one(`[data-do="${pressed}"]`);
         if (again) again.focus(); }
 }).observe(root, {subtree: true, childList: true});
@@ -57,19 +58,18 @@ root.addEventListener('change', e => { const i = e.target; delete i.dataset.typi
         send('do', 'load', file.name, text); i.value = ''; }); }
     else if (i.matches('.rdk-box')) send('type', i.dataset.in, i.value);
     else if (i.matches('select')) send('choose', i.dataset.in, i.value); });
-root.addEventListener('click', e => { const b =
-    e.target.closest('[data-do],[data-name],[data-view],[data-tab],[data-js]'); if (!b) return;
-    const menu = b.closest('.rdk-bar details'); if (menu) menu.open = false;
+root.addEventListener('click', e => {
+    all(':is(.rdk-help, .rdk-bar details, .rdk-controls .rdk-more)[open]').forEach(d => {
+        if (!d.contains(e.target) || e.target.closest('.rdk-bar button')) d.open = false; });
+    const b = e.target.closest('[data-do],[data-name],[data-view],[data-tab],[data-js]'); if (!b) return;
     if (b.dataset.do) { pressed = b.dataset.do; send('do', b.dataset.do); }
     else if (b.dataset.name) send('choose', b.dataset.name, b.dataset.value);
-    else if (b.dataset.view) { all('[data-view]').forEach(t => t.setAttribute('aria-selected', t === b));
-        send('choose', 'view', b.dataset.view); }
+    else if (b.dataset.view) { choose('view', b.dataset.view); send('choose', 'view', b.dataset.view); }
     else if (b.dataset.tab) { tab = b.dataset.tab; pages(); }
     else if (b.dataset.js === 'open') one('[type=file]').click();
     else if (b.dataset.js === 'skip') { const v = one('.rdk-say1'); v.tabIndex = -1; v.focus(); }
-    else if (b.dataset.js === 'copy') { const link = JSON.parse(seen).share, text = app ? location.origin +
-        location.pathname + '?' + link : link;
-        copy(text); send('do', 'copied'); } });
+    else if (b.dataset.js === 'copy') { const state = JSON.parse(seen).share;
+        copy(app ? location.origin + location.pathname + '?' + state : state); send('do', 'copied'); } });
 root.addEventListener('keydown', e => { const t = e.target;
     if (e.key === 'Escape') all('details[open]').forEach(d => { if (d.contains(t)) { d.open = false;
         d.querySelector('summary').focus(); } });
@@ -79,18 +79,15 @@ root.addEventListener('keydown', e => { const t = e.target;
         send('do', t.dataset.do); }
     const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[e.key];
     if (step && t.matches('[role=tab],.rdk-pick')) { e.preventDefault();
-        const row = t.matches('.rdk-pick') ? all('.rdk-pick') : [...t.parentNode.children], next = row[(row.indexOf(t)
-            + step + row.length) % row.length];
+        const row = t.matches('.rdk-pick') ? all('.rdk-pick') : [...t.parentNode.children];
+        const next = row[(row.indexOf(t) + step + row.length) % row.length];
         next.tabIndex = 0; next.focus(); if (t.matches('[role=tab]')) next.click(); } });
-root.addEventListener('toggle', e => { if (e.target.open && e.target.matches('.rdk-help'))
-    all('.rdk-help[open]').forEach(d => d.open = d === e.target); }, true);
+root.addEventListener('toggle', e => { if (e.target.matches('.rdk-verdict details')) unfolded = e.target.open; }, true);
 root.addEventListener('focusin', e => { e.target.dataset.lmSuppressShortcuts = 'true';
     if (e.target.dataset.do !== pressed) pressed = ''; });
 const measure = () => { const p = one('.rdk-picture'); if (!p || !p.clientWidth) return;
-    const phone = root.clientWidth <= 700, room = app && !phone ? innerHeight - p.getBoundingClientRect().top -
-        scrollY - (one('.rdk-tray')?.offsetHeight || 90) - 50 : 380;
-    const now = [p.clientWidth - 24, Math.max(phone ? 320 : 300, Math.min(620, Math.round(room)))];
-        if (now.join() !== size) { size = now.join(); send('size', ...now); } };
+    const now = [p.clientWidth - 24, app && root.clientWidth > 1120 ? p.clientHeight - 12 : 380];
+    if (now.join() !== size) { size = now.join(); send('size', ...now); } };
 let wait; new ResizeObserver(() => { clearTimeout(wait); wait = setTimeout(measure, 200); }).observe(root);
 if (app) document.title = 'Rover explorer: will this rover do this mission?';
 pages(); apply(); setTimeout(measure, 50); addEventListener('resize', measure);
