@@ -497,7 +497,7 @@ def test_status_follows_requirement_and_interval(explorer):
     for limit, status in cases:
         explorer.set(maximum_mass_kg=limit)
         explorer.settle()
-        cards = re.findall(r'class="rdk-card rdk-(\w+)"><span class="h"><span>(\w+)', explorer.parts["verdict"].value)
+        cards = re.findall(r'class="rdk-card rdk-(\w+)"><div class="h"><span>(\w+)', explorer.parts["verdict"].value)
         assert ("Mass", status) in [(title, found) for found, title in cards]
     share = np.mean(answers.meets(explorer.intervals.draws, explorer.scenario.problem.constraints))
     assert f"Drives in {100 * share:.0f} % of {answers.DRAWS:,} draws" in shown(explorer)
