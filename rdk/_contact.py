@@ -89,15 +89,18 @@ class Arcs:
         mobilised = np.copysign(1 - decay, j)
         strength = sigma * tan_phi
         strength += c
-        tau = strength * mobilised                                       # eq. tau
+        self.tau = tau = strength * mobilised                            # eq. tau
         # per unit of area: upward and forward part of both stresses
         self.vertical, self.forward = sigma * cos + tau * sin, tau * cos - sigma * sin
         self.span = pair(theta_1 * (1 - kappa), theta_1 * kappa, b * r)                  # area of each arc
         self.mean_vertical, self.mean_forward = w @ self.vertical, w @ self.forward
         self.load, self.pull = both(self.span * self.mean_vertical), both(self.span * self.mean_forward)
-        self.torque = both(self.span * (w @ tau)) * r
         self.given = theta_1, s, patch, rule
         self.nodes = a, sin, sin_1, cos, cos_1, depth, sigma, chord, decay, mobilised, strength
+
+    @property
+    def torque(self):
+        return both(self.span * (self.given[3][1] @ self.tau)) * self.given[2].r
 
     @cached_property
     def rates(self):
@@ -177,16 +180,20 @@ def entry_angle(patch, s, target, with_pull=0.0, rule=DRIVING):
         newton = theta * np.exp(within(step, -1, 1))
         done = (np.abs(step) < STEP_DONE) & (np.abs(miss) < 10 * STEP_DONE)
         inside = (newton > low) & (newton < high)
-        # beyond the far end: look there once, since a wheel that does not hold there is buried
-        new = np.where(inside, newton, np.where((newton >= high) & (high == HALF_PI) & (low < HALF_PI), HALF_PI,
-                                                (low + high) / 2))
-        shut = high - low < 1e-14
-        gone = (low == HALF_PI) | (shut & (high == HALF_PI))               # not carried below 90 degrees: buried
-        done = (done | shut) & ~gone
-        if done.any() or gone.any():
-            last = np.where(inside, newton - theta, 0.0)
-            result[:, lane[done]] = np.stack([theta + last, load + load_t * last, pull + pull_t * last])[:, done]
-            keep = np.flatnonzero(~(done | gone))
+        new, gone = newton, np.zeros_like(done)
+        if not inside.all():
+            # beyond the far end: look there once, since a wheel that does not hold there is buried
+            new = np.where(inside, newton, np.where((newton >= high) & (high == HALF_PI) & (low < HALF_PI), HALF_PI,
+                                                    (low + high) / 2))
+            shut = high - low < 1e-14
+            gone = (low == HALF_PI) | (shut & (high == HALF_PI))           # not carried below 90 degrees: buried
+            done = (done | shut) & ~gone
+        out = done | gone
+        if out.any():
+            last, to = np.where(inside, newton - theta, 0.0), lane[done]
+            for row, value in zip(result, (theta + last, load + load_t * last, pull + pull_t * last)):
+                row[to] = value[done]
+            keep = np.flatnonzero(~out)
             lane, patch, s, target, with_pull = lane[keep], patch.take(keep), s[keep], target[keep], with_pull[keep]
             low, high, new = low[keep], high[keep], new[keep]
         theta = new
@@ -224,7 +231,7 @@ def _slope(patch, slip, theta_1, load, pull, limit_deg):
     load = load.copy()
     deep = np.flatnonzero(theta_1 > 0.7)                 # might be buried on the flat, where the load is largest
     if deep.size:
-        flat = forces(np.full(deep.size, HALF_PI), slip[deep], patch.take(deep))[0]
+        flat = Arcs(np.full(deep.size, HALF_PI), slip[deep], patch.take(deep)).load
         load[deep[flat < np.hypot(load[deep], pull[deep])]] = np.nan
     return np.where(load > 0, np.clip(np.degrees(np.arctan2(pull, load)), 0, limit_deg), 0.0)
 
@@ -247,7 +254,7 @@ def climb(patch, weight, slope, low, high, slip, limit_deg):
     (theta_high, _, pull_high), at_slip = ends[:, :count], ends[:, count:]
     # slip grows almost alike in all wheels and soils with the demand's share of the pull at the capability slip
     demand = np.tan(slope) * at_slip[1] / at_slip[2]
-    guess = np.nan_to_num(slip * np.clip(demand, 0.1, 1.5) ** 1.25, nan=0.5)
+    guess = np.where(np.isnan(demand), 0.5, slip * within(demand, 0.1, 1.5) ** 1.25)
     return (*_slip_balance(patch, load, weight * np.sin(slope), low, high, theta_high, pull_high, guess),
             _slope(patch, slip, *at_slip, limit_deg))
 
@@ -259,7 +266,7 @@ def _brakes(patch, load, low):
     carries its load within that angle brakes; one evaluation shows it, where the exact pull would take a solve.
     """
     theta_limit = np.arccos(np.minimum(1 / (1 - low), 1))
-    return forces(theta_limit, low, patch)[0] > load
+    return Arcs(theta_limit, low, patch).load > load
 
 
 def _slip_balance(patch, *lanes):

@@ -97,13 +97,22 @@ def check(name, value, minimum=-math.inf, maximum=math.inf, **limits):
 
 def together(**shapes):
     """Broadcast shapes, or a ValueError that names the arrays whose lengths disagree."""
-    if not any(shapes.values()):
-        return ()
+    distinct = set(shapes.values()) - {()}
+    if len(distinct) < 2:                                # as nearly always
+        return distinct.pop() if distinct else ()
     try:
         return np.broadcast_shapes(*shapes.values())
     except ValueError:
         arrays = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
         raise ValueError(f"array lengths must agree or broadcast; got shapes {arrays}") from None
+
+
+def in_rows(values, shape):
+    """Numbers and arrays as the rows of one array, each broadcast to a shape and then flat."""
+    rows = np.empty((len(values), *shape))
+    for i, value in enumerate(values):
+        rows[i] = value
+    return rows.reshape(len(values), math.prod(shape))
 
 
 def unknown(what, name, known):

@@ -83,7 +83,9 @@ def _step_times(scenario, model):
     duration, step = scenario.duration_earth_days * 24.0, model.time_step_h
     count = max(int(np.ceil(duration / step - 1e-9)), 1)
     times = np.minimum(np.arange(1, count + 1) * step, duration)
-    return times, np.diff(times, prepend=0.0)
+    steps = times.copy()
+    steps[1:] -= times[:-1]
+    return times, steps
 
 
 def _sun(time_h, lane):
@@ -113,26 +115,29 @@ def traverse(design, scenario, model, slip, torque_nm, stalled, shape, with_arri
     records = zip((design, scenario, model), _MARCHED)
     lanes = {name: getattr(record, name) for record, names in records for name in names}
     lanes |= dict(slip=slip, torque_nm=torque_nm, stalled=stalled)
-    lanes = {name: shaped(value, shape).ravel() if np.ndim(value) else value for name, value in lanes.items()}
+    lanes = {name: shaped(value, shape).ravel() if isinstance(value, np.ndarray) else value
+             for name, value in lanes.items()}
     times, steps = _step_times(scenario, model)
     block = max(MARCH_ELEMENTS // len(times), 32)
+    work = np.empty((4, len(times) * max(min(block, size), 1)))      # new arrays for each block would cost more to get
     results = {}
     for start in range(0, max(size, 1), block):
-        lane = SimpleNamespace(**{name: value[start:start + block] if np.ndim(value) else value
+        lane = SimpleNamespace(**{name: value[start:start + block] if isinstance(value, np.ndarray) else value
                                   for name, value in lanes.items()})
         exact = np.asarray(lane.exact_floor) == 1
         width = min(block, size - start) if shape else 1
-        found, log = _march(lane, width, times, steps, exact.any(), shape == (), with_arrival)
+        arrays = work[:, :len(times) * width].reshape(4, len(times), width)
+        found, log = _march(lane, arrays, times, steps, exact.any(), shape == (), with_arrival)
         if exact.any() and not exact.all():
-            paper, _ = _march(lane, width, times, steps, False, False, with_arrival)
+            paper, _ = _march(lane, arrays, times, steps, False, False, with_arrival)
             found = {name: np.where(exact, value, paper[name]) for name, value in found.items()}
         for name, value in found.items():
             results.setdefault(name, np.empty(size, np.result_type(value)))[start:start + block] = value
     return {name: value.reshape(shape) for name, value in results.items()}, log
 
 
-def _march(lane, width, times, steps, exact, with_log, with_arrival):
-    """March a block of lanes: every attribute of `lane` is a number or an array with `width` entries.
+def _march(lane, work, times, steps, exact, with_log, with_arrival):
+    """March a block of lanes in `work`, shape (4, steps, lanes); attributes of `lane` are numbers or have its lanes.
 
     The paper takes the sun at the end of each step and drives a step that reaches the floor to its end; `exact` takes
     the sun in the middle of the step and throttles from where the floor is reached, so that the step's length hardly
@@ -141,30 +146,32 @@ def _march(lane, width, times, steps, exact, with_log, with_arrival):
     sun = lane.solar_constant_w_m2 * lane.panel_efficiency * lane.dust_factor * lane.solar_area_m2
     duty, limit, capacity = lane.duty_cycle, np.asarray(lane.traverse_limit_km), np.asarray(lane.battery_capacity_wh)
     base_load = lane.avionics_power_w + np.asarray(lane.payload_power_w)
-    average = sun * _incidence(np.linspace(0, times[-1], MEAN_SAMPLES), lane).mean(0)
+    seen = np.concatenate([times - steps / 2 if exact else times, np.linspace(0, times[-1], MEAN_SAMPLES)])
+    incidence, sampled = np.split(_incidence(seen, lane), [len(times)])
+    average = sun * sampled.mean(0)
     # a motor's line: its no-load speed falls with the torque, by the droop at the peak
     hub_speed = lane.hub_no_load_speed_rad_s * (
-        1 - lane.motor_droop * np.clip(lane.torque_nm / lane.peak_wheel_torque_nm, 0, 1))
+        1 - lane.motor_droop * np.minimum(np.maximum(lane.torque_nm / lane.peak_wheel_torque_nm, 0), 1))
     moving = ~np.asarray(lane.stalled)
     speed, energy_speed, mobility = (np.where(moving, x, 0.0) for x in cruise_speed(
         average, base_load, lane.wheel_count, lane.torque_nm, lane.slip, lane.wheel_radius_m, duty,
         lane.drivetrain_efficiency, hub_speed, lane.maximum_speed_m_s))
-    incidence = _incidence(times - steps / 2 if exact else times, lane)
-    solar = incidence * sun                              # (steps, lanes)
+    solar, net, driving, lost = work
+    np.multiply(incidence, sun, out=solar)
     floor = lane.soc_floor * capacity
     initial = np.maximum(lane.soc_initial * capacity, floor)
 
     def charge(load):
         """Stored energy at the end of each step, and the share of the step spent on the floor, short of power."""
-        net = np.empty((len(times), width))
-        np.subtract(solar, load, out=net)                # for all lanes, also those that differ in the battery only
+        np.subtract(solar, load, out=net)
         deficit = net < 0
         stored = power.march_battery(net, steps[:, None], capacity, soc_initial=lane.soc_initial,
                                      soc_floor=lane.soc_floor, charge_efficiency=lane.charge_efficiency,
                                      discharge_efficiency=lane.discharge_efficiency)
         on_floor = stored <= floor
         # a step that starts on the floor with too little sun drives on what the sun leaves above the base load
-        share = deficit & np.concatenate([np.broadcast_to(initial <= floor, (1, on_floor.shape[1])), on_floor[:-1]])
+        started = np.concatenate([np.broadcast_to(initial <= floor, (1, on_floor.shape[1])), on_floor[:-1]])
+        share = deficit & started
         if exact:                                        # so does one that reaches the floor, from there on
             before = np.concatenate([np.broadcast_to(initial, (1, on_floor.shape[1])), stored[:-1]])
             hours = (before - floor) * lane.discharge_efficiency / (load - solar)
@@ -174,15 +181,25 @@ def _march(lane, width, times, steps, exact, with_log, with_arrival):
     stored, on_floor, share = charge(base_load + duty * mobility)
     throttled = share > 0 if exact else share
     # energies by the trapezoidal rule over the samples, nothing recorded at the start: the last one counts half
-    samples = steps if exact else (steps + np.append(steps[1:], 0.0)) / 2
+    samples = steps.copy()
+    if not exact:
+        samples[:-1] += steps[1:]
+        samples /= 2
     driven_h, mobility_h = duty * steps.sum(), duty * samples.sum()
-    driving = np.asarray(duty)                           # duty of each step
+    sunless = solar < base_load
     if throttled.any():
-        # what the sun alone carries above avionics and payload
-        sunlit = np.clip((solar - base_load) / np.where(mobility > 0, mobility, np.inf), 0.0, duty)
-        driving = duty - share * (duty - sunlit) if exact else np.where(share, sunlit, duty)
-        lost = duty - driving
+        # what the sun alone carries above avionics and payload: nothing but in a few steps, at dusk and dawn
+        driving.fill(0.0)
+        row = np.flatnonzero((throttled > sunless).any(1))
+        driving[row] = np.clip((solar[row] - base_load) / np.where(mobility > 0, mobility, np.inf), 0.0, duty)
+        if exact:
+            np.subtract(duty, share * (duty - driving), out=driving)
+        else:
+            np.copyto(driving, duty, where=~share)
+        np.subtract(duty, driving, out=lost)
         driven_h, mobility_h = driven_h - steps @ lost, mobility_h - samples @ lost
+    else:
+        driving = np.asarray(duty)                       # of each step
     distance = np.where(driven_h > 0, 3.6 * speed * driven_h, 0.0)
     stops = np.asarray(lane.stop_at_limit) == 1
     arrival = _arrival(limit, distance, 3.6 * speed, driving, times, steps) if with_arrival or stops.any() else None
@@ -194,7 +211,7 @@ def _march(lane, width, times, steps, exact, with_log, with_arrival):
         mobility_h = samples @ np.broadcast_to(driving, stored.shape)
     unserved_h = 0.0
     if on_floor.any():
-        dark = on_floor & (solar < base_load)
+        dark = np.logical_and(on_floor, sunless, out=lost)
         unserved_h = steps @ (dark * share if exact else dark)
     generated = sun * (samples @ incidence)
     consumed = base_load * samples.sum() + mobility * mobility_h

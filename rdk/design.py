@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._fields import Record, check, described, number, require, together
+from ._fields import Record, check, described, in_rows, number, require, together
 from .sky import Skyline, julian_date
 from .terramechanics import KernelOptions, Soil, Wheel
 
@@ -63,6 +63,8 @@ class Design(Record):
 
 DESIGN_SPACE = {f.name: f.metadata["axis"] for f in fields(Design)}
 """The eleven design variables with their search range (the paper's Table 1), unit, symbol and label."""
+_LOW = np.array([[v.low * (1 - 1e-12)] for v in DESIGN_SPACE.values()])
+_HIGH = np.array([[v.high * (1 + 1e-12)] for v in DESIGN_SPACE.values()])
 
 
 @dataclass(frozen=True)
@@ -228,9 +230,10 @@ class Model(KernelOptions):
 
 def warn_outside(design, stacklevel=3):
     """One UserWarning that names the variables of `design` outside DESIGN_SPACE, where the models are unchecked."""
-    outside = [f"{name} ({v.low:g} to {v.high:g} {v.unit})" for name, v in DESIGN_SPACE.items()
-               if np.any(np.asarray(getattr(design, name)) < v.low * (1 - 1e-12))
-               or np.any(np.asarray(getattr(design, name)) > v.high * (1 + 1e-12))]
-    if outside:
+    rows = in_rows([getattr(design, name) for name in DESIGN_SPACE], design.shape)
+    beyond = ((rows < _LOW) | (rows > _HIGH)).any(1)
+    if beyond.any():
+        outside = [f"{name} ({v.low:g} to {v.high:g} {v.unit})"
+                   for (name, v), out in zip(DESIGN_SPACE.items(), beyond) if out]
         warnings.warn("design outside the class that the models were checked on: " + ", ".join(outside),
                       UserWarning, stacklevel=stacklevel)

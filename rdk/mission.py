@@ -73,7 +73,7 @@ class Performance(Record):
         "Negative where they overlap, which no model forbids.")
     tip_over_deg: float = Later("Least slope at which the standing rover tips over, in any direction; "
                                 "`rdk.stability` has its assumptions.")
-    mass: MassBreakdown
+    mass: MassBreakdown = Later("Its items.")
     log: TraverseLog | None = described("Hour by hour, for one design only.", default=None, compare=False)
 
 
@@ -98,10 +98,10 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
         mass = mass_of(design, scenario, model)
         # load and pull are shared equally; a mass beyond all floats is buried, no error
         weight = np.fmin(mass.total_kg * model.gravity_m_s2 / design.wheel_count, 1e300)
-        balance, capability = terramechanics.climb(
-            design.wheel, scenario.soil, weight, scenario.slope_deg, slip_min=model.slip_min, slip_max=model.slip_max,
-            capability_slip=model.slope_capability_slip, capability_limit_deg=model.slope_capability_limit_deg,
-            **{name: getattr(model, name) for name in terramechanics.OPTIONS})
+        balance, capability = terramechanics.climbed(
+            design.wheel, scenario.soil, model, weight, scenario.slope_deg, slip_min=model.slip_min,
+            slip_max=model.slip_max, capability_slip=model.slope_capability_slip,
+            capability_limit_deg=model.slope_capability_limit_deg)
         stance = partial(_stance, design, mass, model)
         torque = balance.torque_nm
         if np.any(model.axle_torque):
@@ -136,11 +136,10 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
         obstacle_capability_m=obstacle, ground_pressure_kpa=pressure, sliding=balance.sliding,
         hot_survival=hot_survival, cold_survival=cold_survival, structure_share=mass.chassis_kg / mass.total_kg,
         wheel_gap_m=design.wheelbase_m - along)
-    items = {name: shaped(value, shape) for name, value in mass.numbers().items()}
     return Performance.trusted(shape, dict(
         {name: shaped(value, shape) for name, value in found.items()},
-        mass=MassBreakdown.trusted(shape, items), log=log,
-        arrival_h=partial(_arrival_h, march, shape), tip_over_deg=partial(_tip_over, design, stance, shape)))
+        log=log, mass=partial(_items, mass, shape), arrival_h=partial(_arrival_h, march, shape),
+        tip_over_deg=partial(_tip_over, design, stance, shape)))
 
 
 def mass_of(design, scenario, model):
@@ -167,6 +166,10 @@ def _axle_torque(design, scenario, model, mass, slip, stance):
                                          np.where(sound, slip, 0.0),
                                          **{name: getattr(model, name) for name in terramechanics.OPTIONS})
     return np.where(sound & np.isfinite(forces.torque_nm), forces.torque_nm, np.inf)
+
+
+def _items(mass, shape):
+    return MassBreakdown.trusted(shape, {name: shaped(value, shape) for name, value in mass.numbers().items()})
 
 
 def _tip_over(design, stance, shape):

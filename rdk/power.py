@@ -4,11 +4,14 @@ Closed-form solar geometry on a smooth sphere (Duffie & Beckman 2013). At the po
 out what the terrain does to it, which matters more: `rdk.sky` has the real sun and the share of it above a skyline.
 Azimuths run from north, clockwise: 0 north, 90 east, 180 south.
 """
+from itertools import pairwise
+
 import numpy as np
 
 from ._fields import Real
 
 ROUNDING = 1e-12                                         # sin(elevation) below this share of its terms is no sunlight
+FEW = 128                                                # lanes up to which sums over many steps are faster than steps
 
 
 def hour_angle_deg(time_h: Real, synodic_day_h: Real = 708.734136) -> Real:
@@ -90,18 +93,23 @@ def march_battery(net_power_w: np.ndarray, time_step_h: Real, capacity_wh: Real,
     lanes = energy.shape[1:]
     floor = np.broadcast_to(np.asarray(soc_floor) * capacity_wh, lanes)
     full = np.broadcast_to(np.asarray(capacity_wh, float), lanes)
-    stored = np.clip(np.broadcast_to(np.asarray(soc_initial) * capacity_wh, lanes), floor, full)
-    if energy[0].size == 1:                              # one rover: plain floats are faster than arrays of one
-        low, high, charge, march = floor.item(), full.item(), stored.item(), []
-        for change in energy.ravel().tolist():
-            charge = min(max(charge + change, low), high)
-            march.append(charge)
-        energy[...] = np.reshape(march, energy.shape)
-        return energy
+    stored = np.minimum(np.maximum(np.asarray(soc_initial) * capacity_wh, floor), full)
     add, minimum, maximum = np.add, np.minimum, np.maximum
-    for step in energy:                                  # a running clamp: the one loop over time there is
-        add(step, stored, out=step)
-        maximum(step, floor, out=step)
-        minimum(step, full, out=step)
-        stored = step
+    if energy[0].size > FEW:
+        for step in energy:                              # a running clamp: the one loop over time there is
+            add(step, stored, out=step)
+            maximum(step, floor, out=step)
+            minimum(step, full, out=step)
+            stored = step
+        return energy
+    # while no lane's power changes its sign, a sum that has passed a bound stays beyond it: it is clamped afterwards
+    rising = energy >= 0
+    turns = np.flatnonzero((rising[1:] != rising[:-1]).any(tuple(range(1, energy.ndim)))) + 1
+    for start, end in pairwise([0, *turns.tolist(), len(energy)]):
+        steps = energy[start:end]
+        steps[:1] += stored
+        add.accumulate(steps, out=steps)
+        maximum(steps, floor, out=steps)
+        minimum(steps, full, out=steps)
+        stored = steps[-1]
     return energy

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arc, _contact
-from ._fields import Record, brief, check, described, number, require, together, unknown
+from ._fields import Record, brief, check, described, in_rows, number, require, together, unknown
 
 SLIP_MIN, SLIP_MAX = -0.9, 0.95                          # where the slip balance is sought
 CAPABILITY_SLIP, CAPABILITY_LIMIT_DEG = 0.6, 35.0        # peak-pull convention; steepest slope reported
@@ -210,10 +210,16 @@ def climb(wheel: Wheel, soil: Soil, weight_n: ArrayLike, slope_deg: ArrayLike, *
     The balance is that of load weight * cos(slope) and required pull weight * sin(slope), eq. required-dp, with the
     slope above -90 and below 90 degrees.
     """
+    return climbed(wheel, soil, options, check("weight_n", weight_n, above=0),
+                   check("slope_deg", slope_deg, above=-90, below=90), **_interval(slip_min, slip_max),
+                   **_at_capability(capability_slip, capability_limit_deg))
+
+
+def climbed(wheel, soil, options, weight_n, slope_deg, *, slip_min, slip_max, capability_slip, capability_limit_deg):
+    """What `climb` returns, of values that are known to be sound: those of a Scenario and a Model."""
     *balance, capability = _solve(
-        "climb", wheel, soil, options, weight_n=check("weight_n", weight_n, above=0),
-        slope_deg=np.radians(check("slope_deg", slope_deg, above=-90, below=90)),
-        **_interval(slip_min, slip_max), **_at_capability(capability_slip, capability_limit_deg))
+        "climb", wheel, soil, options, weight_n=weight_n, slope_deg=np.radians(slope_deg), slip_min=slip_min,
+        slip_max=slip_max, capability_slip=capability_slip, capability_limit_deg=capability_limit_deg)
     return _reported(SlipBalance(*balance), options), capability
 
 
@@ -290,30 +296,34 @@ def _at_capability(slip, limit_deg):
 
 def _reported(forces, options):
     """Forces or balance with the sinkage as it is to be reported."""
-    sinkage = np.multiply(forces.sinkage_m, options.get("sinkage_scale", 1.0))
+    scale = options.get("sinkage_scale", 1.0) if isinstance(options, dict) else options.sinkage_scale
+    sinkage = np.multiply(forces.sinkage_m, scale)
     return forces._replace(sinkage_m=sinkage if sinkage.ndim else float(sinkage))
 
 
 def patch_of(wheel, soil, options, **arrays):
     """The patch and the arrays as flat lanes, and the shape to give back."""
     require(wheel=(wheel, Wheel), soil=(soil, Soil))
-    c1, c2 = options.transition
-    shape = together(wheel=wheel.shape, soil=soil.shape,
-                     **{name: np.shape(value) for name, value in (options.numbers() | arrays).items()})
+    shape = together(wheel=wheel.shape, soil=soil.shape, **{
+        name: np.shape(value) for name, value in (arrays | {n: getattr(options, n) for n in OPTIONS[1:]}).items()
+        if isinstance(value, np.ndarray)})
     r, n = np.asarray(wheel.radius_m), soil.sinkage_exponent
     gamma = grouser_lift(wheel, options.grouser_lift_cap) * options.shear_scale
-    rows = (r, wheel.width_m, _k_eff(wheel, soil) * r ** n, n, gamma * soil.cohesion_kpa * 1000,
-            gamma * np.tan(np.radians(soil.friction_angle_deg)), np.asarray(soil.shear_modulus_mm) / 1000, c1, c2)
-    lanes = np.stack([np.broadcast_to(row, shape).ravel() for row in (*rows, *arrays.values())])
-    return _contact.Patch(*lanes[:len(rows)]), lanes[len(rows):], shape
+    lanes = in_rows((
+        r, wheel.width_m, _k_eff(wheel, soil) * r ** n, n, gamma * soil.cohesion_kpa * 1000,
+        gamma * np.tan(np.radians(soil.friction_angle_deg)), np.asarray(soil.shear_modulus_mm) / 1000,
+        *options.transition, *arrays.values()), shape)
+    count = len(_contact.Patch._fields)
+    return _contact.Patch(*lanes[:count]), lanes[count:], shape
 
 
 def _solve(solver, wheel, soil, options, **arrays):
     """A solver of the kernel (or a function) on blocks of lanes that fit the cache; floats for one lane."""
-    for name in options:
-        if name not in OPTIONS:
-            raise TypeError(str(unknown("unexpected keyword argument", name, OPTIONS)))
-    options = KernelOptions(**options)
+    if isinstance(options, dict):
+        for name in options:
+            if name not in OPTIONS:
+                raise TypeError(str(unknown("unexpected keyword argument", name, OPTIONS)))
+        options = KernelOptions(**options)
     patch, lanes, shape = patch_of(wheel, soil, options, **arrays)
     solve, count = solver if callable(solver) else getattr(KERNELS[options.kernel], solver), lanes.shape[1]
     with np.errstate(all="ignore"):                      # a lane without a solution is NaN, not a warning
@@ -322,5 +332,5 @@ def _solve(solver, wheel, soil, options, **arrays):
             return [np.empty(shape, a.dtype) for a in solve(_contact.Patch(*ones[:len(patch)]), *ones[len(patch):])]
         blocks = [slice(i, i + _contact.BLOCK) for i in range(0, count, _contact.BLOCK)]
         parts = [solve(_contact.Patch(*[row[block] for row in patch]), *lanes[:, block]) for block in blocks]
-    joined = [np.concatenate(part).reshape(shape) for part in zip(*parts)]
+    joined = [(np.concatenate(part) if part[1:] else part[0]).reshape(shape) for part in zip(*parts)]
     return [a if shape else a.item() for a in joined]
