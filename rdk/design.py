@@ -228,6 +228,15 @@ class Model(KernelOptions):
                    | changes)
 
 
+def single(**records) -> None:
+    """Refuse what is no record, and records that hold arrays; by name: scenario, model, and any name for a design."""
+    kinds = {"scenario": Scenario, "model": Model}
+    require(**{name: (record, kinds.get(name, Design)) for name, record in records.items()})
+    for name, record in records.items():
+        if record.shape:
+            raise ValueError(f"{name} must be a single one; got arrays of shape {record.shape}")
+
+
 def warn_outside(design, stacklevel=3):
     """One UserWarning that names the variables of `design` outside DESIGN_SPACE, where the models are unchecked."""
     rows = in_rows([getattr(design, name) for name in DESIGN_SPACE], design.shape)

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ._fields import Shown, check, limits_of, require, unknown
-from .design import DESIGN_SPACE, Design, Model, Scenario
+from .design import DESIGN_SPACE, Design, Model, Scenario, single
 from .mission import Performance, evaluate
 from .terramechanics import Soil
 from .uncertainty import DRAWS, uncertain_inputs
@@ -134,15 +134,6 @@ class Sweep(Shown):
         frame = self.to_frame()
         shown = [*range(len(self.fields)), *map(list(frame.columns).index, READINGS)]
         return f"Sweep of {len(frame)} points over {' and '.join(self.fields)}", frame.iloc[:, shown]
-
-
-def single(**records) -> None:
-    """Refuse what is no record, and records that hold arrays; by name: scenario, model, and any name for a design."""
-    kinds = {"scenario": Scenario, "model": Model}
-    require(**{name: (record, kinds.get(name, Design)) for name, record in records.items()})
-    for name, record in records.items():
-        if record.shape:
-            raise ValueError(f"{name} must be a single one; got arrays of shape {record.shape}")
 
 
 def replaced(design: Design, scenario: Scenario, model: Model, changes: dict) -> tuple[Design, Scenario, Model]:

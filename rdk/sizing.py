@@ -14,9 +14,9 @@ import numpy as np
 
 from ._evolution import ELITE, evolve
 from ._fields import Shown, check, unknown
-from .design import DESIGN_SPACE, Design, Model, Scenario
+from .design import DESIGN_SPACE, Design, Model, Scenario, single
 from .mission import Performance, evaluate
-from .sampling import METRICS, decode, demands as checked, encode, light_corner, random_designs, replaced, single
+from .sampling import METRICS, decode, demands as checked, encode, light_corner, random_designs, replaced
 from .uncertainty import uncertain_inputs
 
 __all__ = ["Demand", "Progress", "Sizing", "prudent_demands", "size"]

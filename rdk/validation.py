@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 
 from . import catalog, power
-from ._fields import check
-from .design import DESIGN_SPACE, Model
+from ._fields import check, require, unknown
+from .design import DESIGN_SPACE, Model, single
 from .mass import MassBreakdown, mass_breakdown
 from .mission import MASS_COEFFICIENTS, evaluate
 from .terramechanics import Soil, Wheel, wheel_forces
@@ -27,7 +27,7 @@ def constant(name):
     """The value of a row of `constants.csv`, those of studies included."""
     values = {row["name"]: row["value"] for row in catalog.rows("constants.csv")}
     if name not in values:
-        raise ValueError(f"no constant {name!r} in constants.csv")
+        raise unknown("constants.csv has no constant", name, list(values))
     return float(values[name])
 
 
@@ -45,6 +45,7 @@ def single_wheel_conditions(points: pd.DataFrame | None = None) -> tuple[Wheel, 
     Rows of `single_wheel.csv` (all of them by default) or of `single_wheel_more.csv`, which bring their soil.
     """
     points = catalog.table("single_wheel.csv") if points is None else points
+    require(points=(points, pd.DataFrame))
     wheel = Wheel(points.wheel_radius_mm / 1000, points.wheel_width_mm / 1000, points.grouser_height_mm / 1000,
                   points.grouser_count)
     if "sinkage_exponent" in points:
@@ -55,13 +56,6 @@ def single_wheel_conditions(points: pd.DataFrame | None = None) -> tuple[Wheel, 
     return wheel, soil, points.vertical_load_n.to_numpy(float), points.slip.to_numpy(float)
 
 
-def _forces(conditions, options):
-    """The kernel's answer in the units of the measurements."""
-    forces = wheel_forces(*conditions, **options)
-    return {"drawbar_pull_n": forces.drawbar_pull_n, "sinkage_mm": 1000 * forces.sinkage_m,
-            "torque_nm": forces.torque_nm}
-
-
 def single_wheel(points: pd.DataFrame | None = None, **options) -> pd.DataFrame:
     """Model against measurement at every point of the single-wheel tests, with the options of `wheel_forces`.
 
@@ -70,7 +64,8 @@ def single_wheel(points: pd.DataFrame | None = None, **options) -> pd.DataFrame:
     nothing, or zero, was measured).
     """
     points = catalog.table("single_wheel.csv") if points is None else points
-    model = _forces(single_wheel_conditions(points), options)
+    forces = wheel_forces(*single_wheel_conditions(points), **options)
+    model = dict(zip(QUANTITIES, (forces.drawbar_pull_n, 1000 * forces.sinkage_m, forces.torque_nm)))
     table = points.reindex(columns=["experiment", "wheel", "soil", "vertical_load_n", "slip"])
     for quantity in QUANTITIES:
         table[quantity] = points[quantity] if quantity in points else np.nan
@@ -84,6 +79,15 @@ def _stem(quantity):
     return quantity.rpartition("_")[0]
 
 
+def _measured(points):
+    """Experiment, quantity and the points at which it was measured."""
+    for experiment, group in points.groupby("experiment", sort=False):
+        for quantity in QUANTITIES:
+            known = group[group[_stem(quantity) + "_error_pct"].notna()]
+            if len(known):
+                yield experiment, quantity, known
+
+
 def single_wheel_summary(points: pd.DataFrame | None = None, **options) -> pd.DataFrame:
     """What the errors of the single-wheel tests, as returned by `single_wheel`, come to, per experiment and quantity.
 
@@ -95,21 +99,18 @@ def single_wheel_summary(points: pd.DataFrame | None = None, **options) -> pd.Da
     median_abs_error_of_load_pct (pull only: error in percent of the load).
     """
     points = single_wheel(**options) if points is None else points
+    require(points=(points, pd.DataFrame))
     rows = []
-    for experiment, group in points.groupby("experiment", sort=False):
-        for quantity, unit in QUANTITIES.items():
-            group_error = group[_stem(quantity) + "_error_pct"]
-            known = group_error.notna()
-            error, residual = group_error[known], (group["model_" + quantity] - group[quantity])[known]
-            load = group.vertical_load_n[known]
-            rows.append(dict(
-                experiment=experiment, quantity=_stem(quantity), points=int(known.sum()),
-                median_abs_error_pct=error.abs().median(), median_error_pct=error.median(),
-                over_predicted=int((error > 0).sum()), largest_abs_error_pct=error.abs().max(),
-                median_abs_error=residual.abs().median(), unit=unit,
-                median_abs_error_of_load_pct=(100 * residual / load).abs().median() if unit == "N" else np.nan))
-    table = pd.DataFrame(rows)
-    return table[table.points > 0].reset_index(drop=True)
+    for experiment, quantity, known in _measured(points):
+        error, unit = known[_stem(quantity) + "_error_pct"], QUANTITIES[quantity]
+        residual = known["model_" + quantity] - known[quantity]
+        of_load = (100 * residual / known.vertical_load_n).abs().median() if unit == "N" else np.nan
+        rows.append(dict(
+            experiment=experiment, quantity=_stem(quantity), points=len(known),
+            median_abs_error_pct=error.abs().median(), median_error_pct=error.median(),
+            over_predicted=int((error > 0).sum()), largest_abs_error_pct=error.abs().max(),
+            median_abs_error=residual.abs().median(), unit=unit, median_abs_error_of_load_pct=of_load))
+    return pd.DataFrame(rows)
 
 
 def single_wheel_curves(slip, **options) -> pd.DataFrame:
@@ -121,8 +122,8 @@ def single_wheel_curves(slip, **options) -> pd.DataFrame:
     tests = catalog.table("single_wheel.csv").drop_duplicates(["experiment", "wheel"])
     slip = np.atleast_1d(check("slip", slip, -1, 1))
     lanes = tests.loc[tests.index.repeat(len(slip))].assign(slip=np.tile(slip, len(tests))).reset_index(drop=True)
-    model = _forces(single_wheel_conditions(lanes), options)
-    return lanes[["experiment", "wheel", "soil", "slip"]].assign(**{"model_" + q: model[q] for q in QUANTITIES})
+    columns = ["experiment", "wheel", "soil", "slip", *("model_" + quantity for quantity in QUANTITIES)]
+    return single_wheel(lanes, **options)[columns]
 
 
 def bootstrap_medians(reading_error_n: float = 0.5, reading_error_m: float = 1e-3, reading_error_nm: float = 0.1, *,
@@ -143,21 +144,16 @@ def bootstrap_medians(reading_error_n: float = 0.5, reading_error_m: float = 1e-
                                   1000 * check("reading_error_m", reading_error_m, 0, scalar=True),
                                   check("reading_error_nm", reading_error_nm, 0, scalar=True))))
     samples = int(check("samples", samples, 1, whole=True, scalar=True))
-    rng, points, rows = np.random.default_rng(seed), single_wheel(**options), []
-    for experiment, group in points.groupby("experiment", sort=False):
-        for quantity, spread in sigma.items():
-            known = group[group[_stem(quantity) + "_error_pct"].notna()]
-            if known.empty:
-                continue
-            measured, model = (known[name].to_numpy() for name in (quantity, "model_" + quantity))
-            read = measured + spread * rng.standard_normal((samples, len(measured)))
-            error = abs(error_pct(model, read))
-            if resample_points:
-                error = np.take_along_axis(error, drawn(known.wheel.to_numpy(), samples, rng), 1)
-            low, median, high = np.nanpercentile(np.nanmedian(error, 1), [5, 50, 95])
-            rows.append(dict(experiment=experiment, quantity=_stem(quantity), points=len(measured),
-                             median_abs_error_pct=np.median(abs(error_pct(model, measured))), low_pct=low,
-                             median_pct=median, high_pct=high))
+    rng, rows = np.random.default_rng(seed), []
+    for experiment, quantity, known in _measured(single_wheel(**options)):
+        measured, model = (known[name].to_numpy() for name in (quantity, "model_" + quantity))
+        error = abs(error_pct(model, measured + sigma[quantity] * rng.standard_normal((samples, len(measured)))))
+        if resample_points:
+            error = np.take_along_axis(error, drawn(known.wheel.to_numpy(), samples, rng), 1)
+        low, median, high = np.nanpercentile(np.nanmedian(error, 1), [5, 50, 95])
+        rows.append(dict(experiment=experiment, quantity=_stem(quantity), points=len(measured),
+                         median_abs_error_pct=np.median(abs(error_pct(model, measured))), low_pct=low,
+                         median_pct=median, high_pct=high))
     return pd.DataFrame(rows)
 
 
@@ -197,26 +193,21 @@ def anchor_torque_nm(published_mass_kg, wheel_count, wheel_radius_m, gravity_m_s
             / wheel_count * wheel_radius_m)
 
 
-def _published(model):
-    """Rows of the mass check and their mass breakdown; fields of `model` broadcast against the rovers (last axis)."""
+def published_masses(model: Model = Model()) -> pd.DataFrame:
+    """Bottom-up mass against published mass, rover by rover, with the line items.
+
+    One row a rover: rover, in_class, wheel_count, published_mass_kg, predicted_mass_kg, error_pct, the line items in
+    kg, peak_wheel_torque_nm (anchored where none is published), and fixed_overhead_kg and fixed_overhead_pct: what does
+    not shrink with the rover (motor and avionics base masses, fixed linkage), grossed up by harness, thermal control
+    and growth, in kg and in percent of the published mass.
+    """
+    single(model=model)
     rovers = catalog.table("rovers.csv").query("use == 'mass check'").reset_index(drop=True)
     anchored = anchor_torque_nm(rovers.published_mass_kg, rovers.wheel_count, rovers.wheel_radius_m)
     rovers["peak_wheel_torque_nm"] = rovers.peak_wheel_torque_nm.fillna(anchored)
     sizes = [name for name in (*DESIGN_SPACE, "payload_mass_kg") if name != "wheelbase_m"]
-    return rovers, mass_breakdown(**{name: rovers[name].to_numpy(float) for name in sizes},
-                                  **{name: getattr(model, name) for name in MASS_COEFFICIENTS})
-
-
-def published_masses(model: Model = Model()) -> pd.DataFrame:
-    """Bottom-up mass against published mass, rover by rover, with the line items.
-
-    The mass coefficients of `model` are used, each a single number. Returns one row a rover: rover, in_class,
-    wheel_count, published_mass_kg, predicted_mass_kg, error_pct, the line items in kg, peak_wheel_torque_nm (anchored
-    where none is published), and fixed_overhead_kg and fixed_overhead_pct: what does not shrink with the rover (motor
-    and avionics base masses, fixed linkage), grossed up by harness, thermal control and growth, in kg and in percent of
-    the published mass.
-    """
-    rovers, mass = _published(model)
+    mass = mass_breakdown(**{name: rovers[name].to_numpy(float) for name in sizes},
+                          **{name: getattr(model, name) for name in MASS_COEFFICIENTS})
     table = rovers[["rover", "in_class", "wheel_count", "published_mass_kg"]].copy()
     table["predicted_mass_kg"] = mass.total_kg
     table["error_pct"] = error_pct(mass.total_kg, rovers.published_mass_kg)
@@ -239,6 +230,7 @@ def published_masses_summary(masses: pd.DataFrame | None = None) -> pd.DataFrame
     published mass.
     """
     masses = published_masses() if masses is None else masses
+    require(masses=(masses, pd.DataFrame))
     rows = []
     for label, group in ("in class", masses[masses.in_class.astype(bool)]), ("all", masses):
         size = group.error_pct.abs()
@@ -247,27 +239,6 @@ def published_masses_summary(masses: pd.DataFrame | None = None) -> pd.DataFrame
                          largest_abs_error_pct=size.max(),
                          rank_correlation=group.error_pct.rank().corr(group.published_mass_kg.rank())))
     return pd.DataFrame(rows)
-
-
-def mass_sensitivity(change_pct: float = 20.0, model: Model = Model()) -> pd.DataFrame:
-    """What a change of one mass coefficient at a time does to the published-mass table.
-
-    The change is relative, in percent and above -100; `model` is where it starts. Returns one row a coefficient:
-    coefficient, value, changed_value, median_abs_error_pct over the in-class rovers, and the change of each rover's
-    total in percent, one column a rover.
-    """
-    change = check("change_pct", change_pct, above=-100, scalar=True) / 100
-    names = MASS_COEFFICIENTS
-    scale = 1 + change * np.vstack([np.zeros(len(names)), np.eye(len(names))])           # row 0: nothing changed
-    rovers, mass = _published(dataclasses.replace(
-        model, **{name: getattr(model, name) * scale[:, [k]] for k, name in enumerate(names)}))
-    total, inside = mass.total_kg, rovers.in_class.to_numpy(bool)
-    error = abs(error_pct(total, rovers.published_mass_kg))[1:, inside]
-    value = np.array([getattr(model, name) for name in names])
-    table = pd.DataFrame(dict(coefficient=names, value=value, changed_value=value * (1 + change),
-                              median_abs_error_pct=np.median(error, 1)))
-    table = table.join(pd.DataFrame(100 * (total[1:] / total[0] - 1), columns=list(rovers.rover)))
-    return table[(total[1:] != total[0]).any(1)].reset_index(drop=True)              # without those that are not in use
 
 
 # ---- flown rovers ---------------------------------------------------------------------------------------------

@@ -225,6 +225,11 @@ def test_prudent_demands_say_why_and_unpack():
     assert {"unserved_h", "structure_share", "wheel_gap_m", "slip"} <= {demand.field for demand in prudent}
 
 
+def test_prudent_demands_are_those_of_a_single_mission():
+    with pytest.raises(ValueError, match="scenario must be a single one; got arrays of shape .2,."):
+        rdk.prudent_demands(MARE.replace(slope_deg=[5, 10]))
+
+
 def test_prudent_rover_of_the_mare_and_none_at_the_pole(brisk):
     found = rdk.size(MARE, (*BOTH, *rdk.prudent_demands(MARE)), model=rdk.Model.engineering())
     assert not found.message

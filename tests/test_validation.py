@@ -214,20 +214,26 @@ def test_items_add_up_and_summary_is_that_of_the_five(masses):
                     rtol=1e-12)
 
 
-def test_a_changed_coefficient_moves_the_table_as_a_model_would(masses):
-    table = validation.mass_sensitivity(10).set_index("coefficient")
-    model = rdk.Model(growth_fraction=0.22)
-    changed = validation.published_masses(model).set_index("rover")
-    row = table.loc["growth_fraction"]
-    for rover in masses.index:
-        expected = 100 * (changed.predicted_mass_kg[rover] / masses.predicted_mass_kg[rover] - 1)
-        # a difference of nearly equal totals
-        assert_allclose(row[rover], expected, rtol=1e-9)
-    assert_allclose(row.median_abs_error_pct, validation.published_masses_summary(
-        changed.reset_index()).median_abs_error_pct[0], rtol=1e-12)          # the same arithmetic
-    assert table.loc["linkage_base_mass_kg", "Tenacious"] == 0, "a rigid rover has no linkage"
-    nothing = validation.mass_sensitivity(0)
-    assert (nothing[list(masses.index)] == 0).all(axis=None)
+def test_a_changed_coefficient_moves_every_rover(masses):
+    changed = validation.published_masses(rdk.Model(growth_fraction=0.22)).set_index("rover")
+    bus, payload = masses.predicted_mass_kg - masses.payload_kg, masses.payload_kg
+    # growth multiplies all but the payload; the same arithmetic in another order
+    assert_allclose(changed.predicted_mass_kg, bus * 1.22 / 1.2 + payload, rtol=1e-12)
+    heavier = validation.published_masses(rdk.Model(linkage_base_mass_kg=0.6)).set_index("rover").predicted_mass_kg
+    assert heavier["Tenacious"] == masses.predicted_mass_kg["Tenacious"], "a rigid rover has no linkage"
+    assert heavier["Pragyan"] > masses.predicted_mass_kg["Pragyan"]
+
+
+@pytest.mark.parametrize("call, error, words", [
+    (lambda: validation.published_masses("x"), TypeError, "model must be a Model, such as rdk.Model.*got 'x'"),
+    (lambda: validation.published_masses(rdk.Model(growth_fraction=[0.1, 0.2])), ValueError, "model must be a single"),
+    (lambda: validation.single_wheel("x"), TypeError, "points must be a DataFrame; got 'x'"),
+    (lambda: validation.single_wheel_summary("x"), TypeError, "points must be a DataFrame"),
+    (lambda: validation.published_masses_summary(3), TypeError, "masses must be a DataFrame; got int"),
+    (lambda: validation.constant("flown_packing"), ValueError, "no constant 'flown_packing'; nearest are flown_pack")])
+def test_what_is_no_record_or_table_is_refused_by_name(call, error, words):
+    with pytest.raises(error, match=words):
+        call()
 
 
 # ---- flown rovers ------------------------------------------------------------------------------------------
