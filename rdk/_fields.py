@@ -95,6 +95,14 @@ def check(name, value, minimum=-math.inf, maximum=math.inf, **limits):
     return array
 
 
+def floats(name, values):
+    """Values as floats, NaN among them allowed: for large arrays, which `check` would copy."""
+    try:
+        return np.asarray(values, float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be numbers; got {values!r:.80}") from None
+
+
 def together(**shapes):
     """Broadcast shapes, or a ValueError that names the arrays whose lengths disagree."""
     distinct = set(shapes.values()) - {()}
@@ -128,6 +136,13 @@ def require(**kinds):
             got = repr(value) if isinstance(value, str) else type(value).__name__
             such = f", such as {kind.example}" if getattr(kind, "example", "") else ""
             raise TypeError(f"{name} must be a {kind.__name__}{such}; got {got:.200}")
+
+
+def listed(name, values, kind):
+    """Values as a list, each of its kind; a single one as a list of one."""
+    found = list(values) if np.iterable(values) and not isinstance(values, kind) else [values]
+    require(**{f"{name}[{i}]": (value, kind) for i, value in enumerate(found)})
+    return found
 
 
 def brief(result):

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from . import catalog
-from ._fields import check, unknown
+from ._fields import check, listed, unknown
 from .design import DESIGN_SPACE, Design, Scenario
 from .mission import Performance, evaluate
 from .rules import place
@@ -64,7 +64,7 @@ def rediscover(rovers: Iterable[str] = tuple(REDISCOVERED), *, population: int =
     (to the nearest of the worst single search), dominated (some front design is no worse in range, mass and slope
     capability and better in one), and `nearest`, the design.
     """
-    targets = [Target.of(name) for name in ([rovers] if isinstance(rovers, str) else rovers)]
+    targets = [Target.of(name) for name in listed("rovers", rovers, str)]
     generations, seeds = (np.unique(check(name, values, low, whole=True)).tolist() for name, values, low in (
         ("generations", generations, 1), ("seeds", seeds, 0)))
     for name, values in dict(rovers=targets, generations=generations, seeds=seeds).items():

@@ -11,8 +11,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from . import catalog, mission, power, sky
-from ._fields import Real, brief, check, require
+from ._fields import Real, brief, check, listed, require
 from .design import Design, Model, Scenario
+from .sampling import single
 from .terrain import Terrain
 
 MODES = ("drive", "science", "charge", "sleep", "arrived", "empty", "stalled")
@@ -44,9 +45,7 @@ def cost(design: Design, scenario: Scenario, *, model: Model = Model()) -> Calla
 
     One design; the function interpolates a table in steps of 0.5 deg and is infinite beyond 34.5 deg.
     """
-    require(design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
-    if design.shape or scenario.shape:
-        raise ValueError("cost needs one design and one scenario; a way is one rover's")
+    single(design=design, scenario=scenario, model=model)
     slope = np.arange(-34.5, 34.75, 0.5)
     wheel, second = per_metre(design, scenario, slope, model=model)
     joule = wheel + (design.avionics_power_w + scenario.payload_power_w) * second
@@ -97,16 +96,10 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
              tilt_limit_deg: float, edge_limit_deg: float, detour: Real = 1.0) -> Route:
     """The way of least energy between two cells (row, column; row 0 at the top), over the eight neighbours of each.
 
-    Parameters
-    ----------
-    joule_per_m : callable
-        Energy of a metre of ground at slopes along the way (deg, uphill positive), as `cost` returns it. Infinity
-        where the rover cannot go; never negative.
-    tilt_limit_deg, edge_limit_deg : float
-        No cell steeper than the first, in its steepest direction, is entered; no step between cells is steeper than
-        the second, up or down.
-    detour : float or ndarray, shape of the map
-        Length driven over length gained, at least 1.
+    `joule_per_m` gives the energy of a metre of ground at slopes along the way (deg, uphill positive), as `cost`
+    returns it: infinity where the rover cannot go, never negative. No cell is entered that is steeper than
+    `tilt_limit_deg` in its steepest direction; no step between cells is steeper than `edge_limit_deg`, up or down.
+    `detour`, length driven over length gained, is at least 1: one number, or one a cell.
     """
     require(terrain=(terrain, Terrain))
     from scipy.sparse import csr_array
@@ -172,13 +165,14 @@ class Way:
     __repr__ = brief
 
     def __post_init__(self):
-        fields = {name: check(name, getattr(self, name)) for name in list(vars(self))[:4]}
-        distance, slope, *place = (np.atleast_1d(values) for values in fields.values())
-        if any(values.shape != distance.shape for values in place) or slope.shape != distance[1:].shape or (
-                np.any(np.diff(distance) <= 0) or len(self.skyline_m) != len(self.skylines)):
+        skylines = tuple(listed("skylines", self.skylines, sky.Skyline))
+        arrays = {name: check(name, value) for name, value in vars(self).items() if name != "skylines"}
+        points = np.size(self.distance_m)
+        shapes = [(points,), (max(points - 1, 0),), (points,), (points,), (len(skylines),)]
+        if [np.shape(array) for array in arrays.values()] != shapes or np.any(np.diff(arrays["distance_m"]) <= 0):
             raise ValueError("a way needs rising distance_m, latitude_deg and longitude_deg of one length, one "
-                             "slope_deg fewer, and a skyline for each of skyline_m")
-        vars(self).update(fields)
+                             "slope_deg fewer, and as many skylines as skyline_m")
+        vars(self).update(arrays, skylines=skylines)
 
     @property
     def ground_m(self) -> np.ndarray:
@@ -192,8 +186,7 @@ def along(terrain: Terrain, cells: np.ndarray, *, skyline_every_m: float | None 
     require(terrain=(terrain, Terrain))
     cells = check("cells", cells, 0, whole=True)
     if np.shape(cells) != (np.size(cells) // 2, 2) or np.any(cells >= terrain.height_m.shape):
-        raise ValueError("cells must be rows and columns of the map, shape (k, 2); got "
-                         f"shape {np.shape(cells)}, up to {np.max(cells)}")
+        raise ValueError(f"cells must be rows and columns of the map, shape (k, 2); got {cells!r:.80}")
     x, y = terrain.place(*cells.T)
     run = np.hypot(np.diff(x), np.diff(y))
     distance, rise = np.r_[0.0, np.cumsum(run)][:len(x)], np.diff(terrain.height_m[*cells.T])
@@ -205,14 +198,10 @@ def along(terrain: Terrain, cells: np.ndarray, *, skyline_every_m: float | None 
 
 def ridge() -> Way:
     """The tabulated Way along Connecting Ridge, 1.9 km near the south pole, with its skylines 1 m above ground."""
-    rows, table = catalog.rows("ridge_route.csv"), catalog.rows("ridge_route_skylines.csv")
-    distance, latitude, longitude, height = (np.array([float(row[name]) for row in rows]) for name in (
-        "distance_m", "latitude_deg", "longitude_deg", "height_m"))
-    places = [name for name in table[0] if name != "azimuth_deg"]
-    azimuth = [float(row["azimuth_deg"]) for row in table]
-    slope = np.degrees(np.arctan2(np.diff(height), np.diff(distance)))
-    return Way(distance, slope, latitude, longitude, tuple(float(name[3:-1]) for name in places),
-               tuple(sky.Skyline(azimuth, [float(row[name]) for row in table]) for name in places))
+    way, seen = catalog.table("ridge_route.csv"), catalog.table("ridge_route_skylines.csv").set_index("azimuth_deg")
+    slope = np.degrees(np.arctan2(np.diff(way.height_m), np.diff(way.distance_m)))
+    return Way(way.distance_m, slope, way.latitude_deg, way.longitude_deg, [float(name[3:-1]) for name in seen],
+               [sky.Skyline(seen.index, seen[name]) for name in seen])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -246,27 +235,21 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
 
     The rover drives until its state of charge falls to `rest_soc`, then stands with the avionics on while the sun pays
     for them and asleep otherwise (`Model.hibernation_power_w`), and goes on at `go_soc`. It is lost when its pack
-    reaches the floor. The payload runs during the stops for science only.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        With a `start_utc`; soil, payload, panel, speed and duration count.
-    delay_h : float or ndarray
-        Hours after `start_utc` at which to set out; broadcasts with the designs, so that one call tries many dates.
-    follow_sun : bool
-        The panel turns after the sun; else it keeps the scenario's azimuth.
-    detour : float
-        Length driven over length of the way, as from `detour_factor`.
+    reaches the floor. The payload runs during the stops for science only. Of the scenario its `start_utc`, soil,
+    payload, panel, speed and duration count. `delay_h`, the hours after `start_utc` at which to set out, broadcasts
+    with the designs, so that one call tries many dates. To `follow_sun` the panel turns; else it keeps the scenario's
+    azimuth. `detour` is the length driven over that of the way, as from `detour_factor`.
     """
     require(way=(way, Way), design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     if scenario.start_utc is None:
         raise ValueError("a march needs the real sun: give the scenario a start_utc, such as '2026-10-01'")
-    rest_soc = check("rest_soc", rest_soc, np.max(model.soc_floor), check("go_soc", go_soc, 0, 1))
-    science_every_m = check("science_every_m", science_every_m, above=0, infinite=True)
-    science_h, step_h = check("science_h", science_h, 0), check("step_h", step_h, above=0, scalar=True)
+    check("go_soc", go_soc, 0, 1, scalar=True)
+    check("rest_soc", rest_soc, np.max(model.soc_floor), go_soc, scalar=True)
+    check("science_every_m", science_every_m, above=0, infinite=True, scalar=True)
+    for name, value, low in (("science_h", science_h, 0), ("detour", detour, 1), ("step_h", step_h, 1e-6)):
+        check(name, value, low, scalar=True)
     lanes = np.broadcast_shapes(design.shape, scenario.shape, model.shape, np.shape(check("delay_h", delay_h)))
-    if len(lanes) > 1:
+    if len(lanes) > 1 or 0 in lanes:
         raise ValueError(f"a march takes one row of lanes; got shape {lanes}")
 
     def column(value):
@@ -275,7 +258,7 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     wheel, second = (np.broadcast_to(x, (column(0).size, len(way.slope_deg))) for x in per_metre(*(
         record[:, None] if record.shape else record for record in (design, scenario)), way.slope_deg,
         model=model[:, None] if model.shape else model))
-    length = way.ground_m * check("detour", detour, 1, scalar=True)
+    length = way.ground_m * detour
     stuck, goal = np.isinf(second), way.distance_m[-1]
     end = np.where(stuck.any(1), way.distance_m[np.argmax(stuck, 1)], goal)
     clock, joules = (np.cumsum(np.c_[np.zeros(len(x)), np.where(stuck, 1e6, x * length)], axis=1)
@@ -291,7 +274,7 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     time = np.arange(1, steps + 1) * step_h
     date = sky.julian_date(scenario.start_utc) + (time[:, None] - step_h / 2 + np.atleast_1d(delay_h)) / 24
     declination, noon = sky.subsolar_point(date)
-    seen_m, light = np.r_[way.skyline_m or 0.0, np.inf], []          # cos(i) times lit share at each place of a skyline
+    seen_m, light = np.r_[way.skyline_m if way.skylines else 0.0, np.inf], []
     for at, seen in zip(seen_m, way.skylines or [None]):
         lat, lon = (np.interp(at, way.distance_m, values) for values in (
             way.latitude_deg, np.unwrap(way.longitude_deg, period=360)))
@@ -300,7 +283,7 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
                                         azimuth if follow_sun else scenario.panel_azimuth_deg, declination,
                                         sky.lit_fraction(elevation, azimuth, seen))
         light.append(np.broadcast_to(facing, (steps, column(0).size)))
-    light = np.array([*light, light[-1]])                # beyond the last skyline, the last
+    light = np.array([*light, light[-1]])                # cos(i) times lit share by skyline; beyond the last, the last
     panel = column(power.panel_power(np.asarray(design.solar_area_m2), 1.0, efficiency=model.panel_efficiency,
                                      dust_factor=model.dust_factor, solar_constant_w_m2=model.solar_constant_w_m2))
     avionics, payload, asleep, capacity, into, out = (column(x) for x in (

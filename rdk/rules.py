@@ -12,7 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 import pandas as pd
 
-from ._fields import check, require, unknown
+from ._fields import check, listed, require, unknown
 from .design import DESIGN_SPACE, Design, Model, Scenario
 from .mission import evaluate, mass_of
 from .tradespace import Front, beaten, minimised
@@ -34,8 +34,10 @@ def front_statistics(fronts: Iterable[Front]) -> pd.DataFrame:
     radius, grouser height and grouser count at their ceilings, wheel width at its floor (all within 1 % of the searched
     range) and in the lowest 5 % of it; medians of battery, array, radius and width; hypervolume.
     """
-    rows = []
-    for front in _listed(fronts=fronts):
+    rows, fronts = [], listed("fronts", fronts, Front)
+    if not fronts:
+        raise ValueError("fronts must hold at least one Front; got none")
+    for front in fronts:
         d, p = front.designs, front.performance
         row = {"scenario": front.scenario.name, "seed": front.problem.seed, "shear_scale": front.model.shear_scale,
                "obstacle_height_m": front.scenario.required_obstacle_height_m,
@@ -57,16 +59,6 @@ def front_statistics(fronts: Iterable[Front]) -> pd.DataFrame:
                     "array_median_m2": np.median(d.solar_area_m2), "hypervolume": front.history[-1]}
         rows.append(row)
     return pd.DataFrame(rows)
-
-
-def _listed(**fronts):
-    """Fronts, given by the argument's name, as a list of one or more."""
-    ((name, found),) = fronts.items()
-    found = list(found) if isinstance(found, Iterable) else [found]
-    if not found:
-        raise ValueError(f"{name} must hold at least one Front; got none")
-    require(**{f"{name}[{i}]": (front, Front) for i, front in enumerate(found)})
-    return found
 
 
 def require_table(name: str, table: pd.DataFrame, source: str, *columns: str) -> None:
@@ -101,8 +93,9 @@ def crossover(statistics: pd.DataFrame) -> pd.DataFrame:
 def dominated(front: Front, others: Iterable[Front]) -> np.ndarray:
     """Which designs of a front, shape (n,), a design of other fronts dominates in the front's own objectives."""
     require(front=(front, Front))
-    mine, *theirs = (minimised(one.performance, front.problem.objectives) for one in [front, *_listed(others=others)])
-    return beaten(mine, np.concatenate(theirs))
+    mine, *theirs = (minimised(one.performance, front.problem.objectives)
+                     for one in (front, *listed("others", others, Front)))
+    return beaten(mine, np.concatenate([mine[:0], *theirs]))
 
 
 # ---- what a variable is worth ------------------------------------------------------------------------------

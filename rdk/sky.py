@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import power
-from ._fields import Real, Record, check
+from ._fields import Real, Record, check, floats
 
 SUN_RADIUS_DEG = 0.2666                                  # mean; 0.262 to 0.271 through the year
 TT_MINUS_UTC_S = 69.184                                  # since 2017; one second less before
@@ -63,7 +63,7 @@ class Skyline:
 
     def at(self, azimuth_deg: Real) -> Real:
         """Elevation (deg) at azimuths, linear in between."""
-        return np.interp(azimuth_deg, self.azimuth_deg, self.elevation_deg, period=360)
+        return np.interp(floats("azimuth_deg", azimuth_deg), self.azimuth_deg, self.elevation_deg, period=360)
 
 
 def julian_date(utc: str | np.datetime64 | np.ndarray) -> Real:
@@ -85,7 +85,7 @@ def subsolar_point(julian_date: Real) -> tuple[Real, Real]:
 
     At 21 dates from 2015 to 2043 it is within 0.01 deg in latitude and 0.06 deg in longitude of DE440.
     """
-    t = (np.asarray(julian_date, float) - 2451545.0) / 36525         # Julian centuries
+    t = (check("julian_date", julian_date) - 2451545.0) / 36525      # Julian centuries
 
     def angle(start_deg, rate_deg):
         return np.radians(start_deg + rate_deg * t)
@@ -124,6 +124,7 @@ def sun_position(latitude_deg: Real, longitude_deg: Real, julian_date: Real) -> 
     >>> f"{elevation:.1f} deg high"
     '0.8 deg high'
     """
+    latitude_deg, longitude_deg = check("latitude_deg", latitude_deg, -90, 90), check("longitude_deg", longitude_deg)
     declination_deg, noon_deg = subsolar_point(julian_date)
     return power.sun_position(latitude_deg, longitude_deg - noon_deg, declination_deg)
 
@@ -134,11 +135,13 @@ def lit_fraction(elevation_deg: Real, azimuth_deg: Real, skyline: Skyline | Arra
     The skyline is what `Skyline.of` knows; None is the level horizon.
     """
     edge = 0.0 if skyline is None else Skyline.of(skyline).at(azimuth_deg)
-    u = np.clip((np.asarray(elevation_deg) - edge) / SUN_RADIUS_DEG, -1, 1)
+    u = np.clip((floats("elevation_deg", elevation_deg) - edge) / SUN_RADIUS_DEG, -1, 1)
     return 0.5 + (np.arcsin(u) + u * np.sqrt(1 - u * u)) / np.pi
 
 
 def longest_run(flags: ArrayLike, step: float = 1.0) -> float:
     """Length of the longest unbroken run of true `flags` (one dimension), in units of `step`."""
+    if np.ndim(flags) != 1:
+        raise ValueError(f"flags must have one dimension; got {np.ndim(flags)}")
     edges = np.flatnonzero(np.diff(np.r_[0, np.asarray(flags, bool).astype(np.int8), 0]))
     return (edges[1::2] - edges[::2]).max(initial=0) * step

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from . import catalog
-from ._fields import Real, Record, check, limits_of, number, unknown
+from ._fields import Real, Record, check, floats, limits_of, listed, number, unknown
 from .sky import Skyline
 
 RADIUS_M = 1_737_400.0                                   # the sphere of LOLA's heights
@@ -54,7 +54,7 @@ class Terrain:
     __setstate__ = Record.__setstate__                   # a copy's heights are read-only too
 
     def __post_init__(self):
-        height = np.array(self.height_m, float)
+        height = floats("height_m", self.height_m).copy()
         if height.ndim != 2 or min(height.shape) < 2 or np.isinf(height).any() or np.isnan(height).all():
             raise ValueError("height_m must be a grid of at least 2 x 2 cells with finite heights, NaN where there is "
                              f"none, and not NaN alone; got shape {height.shape}")
@@ -78,7 +78,7 @@ class Terrain:
 
     def to_latlon(self, x: Real, y: Real) -> tuple[Real, Real]:
         """Latitude and east longitude (deg) of plane coordinates in metres."""
-        u, v = (check(name, value) / (2 * self.radius_m) for name, value in (("x", x), ("y", y)))
+        u, v = np.divide(np.broadcast_arrays(check("x", x), check("y", y)), 2 * self.radius_m)
         square = u * u + v * v
         p = np.tensordot(self._axes.T, np.array([2 * u, 2 * v, 1 - square]) / (1 + square), 1)
         return np.degrees(np.arcsin(np.clip(p[2], -1, 1))), np.degrees(np.arctan2(p[1], p[0])) % 360
@@ -101,7 +101,8 @@ class Terrain:
     def at(self, x: Real, y: Real) -> Real:
         """Height at points of the plane, bilinear between the centres of cells; NaN outside."""
         rows, columns = self.height_m.shape
-        row, column = (self.north_m - y) / self.step_m - 0.5, (x - self.west_m) / self.step_m - 0.5
+        row = (self.north_m - floats("y", y)) / self.step_m - 0.5
+        column = (floats("x", x) - self.west_m) / self.step_m - 0.5
         inside = (row >= 0) & (row <= rows - 1) & (column >= 0) & (column <= columns - 1)
         i = np.clip(np.where(inside, row, 0), 0, rows - 2).astype(np.intp)       # outside, any cell: it becomes NaN
         k = np.clip(np.where(inside, column, 0), 0, columns - 2).astype(np.intp)
@@ -119,7 +120,8 @@ class Terrain:
     def hillshade(self, azimuth_deg: float = 315.0, elevation_deg: float = 30.0) -> np.ndarray:
         """Brightness 0 to 1 of each cell, lit from an azimuth clockwise from the top of the map; no cast shadows."""
         down, right = np.gradient(self.height_m, self.step_m)
-        azimuth, elevation = np.radians([check("azimuth_deg", azimuth_deg), check("elevation_deg", elevation_deg)])
+        azimuth, elevation = np.radians([check(name, angle, scalar=True) for name, angle in (
+            ("azimuth_deg", azimuth_deg), ("elevation_deg", elevation_deg))])
         facing = np.sin(elevation) - np.cos(elevation) * (np.sin(azimuth) * right - np.cos(azimuth) * down)
         return np.clip(facing / np.sqrt(1 + right**2 + down**2), 0, 1)
 
@@ -130,11 +132,11 @@ class Terrain:
         Coarser maps `beyond` serve where this one ends: the first that covers a point gives its height; where all end,
         nothing more is seen. The search begins at 15 m, by half a cell, later by 1 % of the distance.
         """
-        check("height_m", height_m, 0, scalar=True)
+        x, y, height_m = (check(name, value, low, scalar=True) for name, value, low in (
+            ("x", x, -np.inf), ("y", y, -np.inf), ("height_m", height_m, 0)))
         check("farthest_m", farthest_m, above=NEAREST_M, scalar=True)
         azimuth = np.arange(check("directions", directions, 4, whole=True, scalar=True)) * 360 / directions
-        lat, lon = self.to_latlon(x, y)
-        ground = float(self.at(float(x), float(y)))
+        (lat, lon), ground = self.to_latlon(x, y), float(self.at(x, y))
         if np.isnan(ground):
             raise ValueError(f"no height is known at x {x!r} m, y {y!r} m of {self!r}")
         turn = self.step_m / 2 / GROWTH
@@ -144,7 +146,7 @@ class Terrain:
         arc, height = s / self.radius_m, np.full((directions, len(s)), np.nan)
         east, north, up = _axes(lat, lon)
         ahead = np.outer(np.cos(np.radians(azimuth)), north) + np.outer(np.sin(np.radians(azimuth)), east)
-        for terrain in (self, *beyond):                  # of each map only the stretch that it can add to
+        for terrain in (self, *listed("beyond", beyond, Terrain)):       # of each only the stretch that it can add to
             corner = np.subtract(terrain.to_xy(lat, lon), (terrain.west_m, terrain.north_m))
             other = corner - np.multiply(terrain.height_m.shape[::-1], (terrain.step_m, -terrain.step_m))
             reach = np.hypot(*np.maximum(abs(corner), abs(other)))
@@ -157,7 +159,7 @@ class Terrain:
         # a point of radius r at the arc g stands at tan(elevation) = (r cos g - r_eye) / (r sin g)
         tangent = np.fmax.reduce((r * np.cos(arc) - eye) / (r * np.sin(arc)), axis=1)
         tangent = np.where(np.isnan(tangent), -np.sqrt(max((eye / self.radius_m)**2 - 1, 0)), tangent)   # a bare sphere
-        return Skyline(azimuth, np.degrees(np.arctan(tangent)), float(lat), float(lon), float(height_m),
+        return Skyline(azimuth, np.degrees(np.arctan(tangent)), float(lat), float(lon), height_m,
                        f"{self.name or 'terrain'} at {x:.0f}, {y:.0f} m, {height_m:g} m")
 
 
@@ -209,9 +211,6 @@ def _png(path, **given):
         if centre := re.search(r"centre ([\d.]+) ([NS]) (-?[\d.]+) E", row.get("projection", "")):
             north = 1 if centre[2] == "N" else -1
             given |= dict(latitude_deg=north * float(centre[1]), longitude_deg=float(centre[3]))
-    for name in given:
-        if name not in (known := ("scale", "offset", *limits_of(Terrain))):
-            raise unknown("no geometry", name, known)
     missing = [name for name in needed if name not in given]
     if missing:
         raise ValueError(f"{path.name}: a PNG does not say where it lies; give {', '.join(missing)}")

@@ -53,7 +53,7 @@ def test_where_the_rover_stalls_a_metre_costs_everything():
     assert np.isinf(joule(34.0)) and np.isinf(joule(60.0)) and np.isinf(joule(-60.0))
     standing = ROVER.avionics_power_w + POLAR.payload_power_w
     np.testing.assert_allclose(joule(10.0), wheel[0] + standing * second[0], rtol=1e-12)
-    with pytest.raises(ValueError, match="one design"):
+    with pytest.raises(ValueError, match="design must be a single one"):
         route.cost(rdk.random_designs(2, seed=1), POLAR)
 
 
@@ -185,11 +185,35 @@ def test_a_map_without_a_way_says_so():
     (dict(start=(0.5, 0)), "start must be a cell"), (dict(goal=3), "goal must be a cell"),
     (dict(detour=np.ones((2, 2))), r"detour must .* have the map's shape \(6, 8\)"),
     (dict(tilt_limit_deg=-1), "tilt_limit_deg"), (dict(edge_limit_deg="steep"), "edge_limit_deg"),
-    (dict(detour=0.5), "detour must be at least 1"), (dict(joule_per_m=lambda s: s - 1), "must not be negative")])
+    (dict(detour=0.5), "detour must be at least 1"), (dict(joule_per_m=lambda s: s - 1), "must not be negative"),
+    (dict(joule_per_m=3.0), "joule_per_m must be a function, such as rdk.route.cost"), (dict(start=None), "start must"),
+    (dict(terrain=np.zeros((6, 8))), "terrain must be a Terrain; got ndarray")])
 def test_bad_requests_are_refused(change, words):
     request = dict(terrain=level(), joule_per_m=climbing, start=(0, 0), goal=(5, 7), **FREE) | change
-    with pytest.raises(ValueError, match=words):
+    with pytest.raises((ValueError, TypeError), match=words):
         route.cheapest(**request)
+
+
+@pytest.mark.parametrize("call, words", [
+    (lambda: route.per_metre("x", POLAR, 0.0), "design must be a Design"),
+    (lambda: route.per_metre(ROVER, POLAR, "steep"), "slope_deg must be .*'steep'"),
+    (lambda: route.cost(ROVER, "polar"), "scenario must be a Scenario"),
+    (lambda: route.rocks_per_m2(0.0, 0.1), "diameter_m must be positive"),
+    (lambda: route.rocks_per_m2(0.1, 1.5), "area_fraction must be at least 0 and at most 1"),
+    (lambda: route.detour_factor("x", 0.5, 0.1), "obstacle_m must be positive"),
+    (lambda: route.detour_factor(0.1, np.nan, 0.1), "width_m must be positive"),
+    (lambda: route.along("x", [[0, 0]]), "terrain must be a Terrain"),
+    (lambda: route.along(level(), []), "cells must be rows"),
+    (lambda: route.along(level(), [[0, 0], [6, 0]]), "cells must be rows and columns of the map"),
+    (lambda: route.along(level(), [[0, 0], [1, 1]], skyline_every_m=0), "skyline_every_m must be positive"),
+    (lambda: Way([0.0, 1.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]), "one slope_deg fewer"),
+    (lambda: Way([1.0, 0.0], [0.0], [0.0, 0.0], [0.0, 0.0]), "rising distance_m"),
+    (lambda: Way([0.0, 1.0], [0.0], [0.0, 0.0], [0.0, 0.0], [0.0]), "as many skylines as skyline_m"),
+    (lambda: Way([0.0, 1.0], [0.0], [0.0, 0.0], [0.0, 0.0], [0.0], ["x"]), r"skylines\[0\] must be a Skyline"),
+    (lambda: Way([0.0, np.nan], [0.0], [0.0, 0.0], [0.0, 0.0]), "distance_m must be finite; got nan")])
+def test_what_is_no_record_number_or_way_is_refused_by_name(call, words):
+    with pytest.raises((ValueError, TypeError), match=words):
+        call()
 
 
 @real_maps
@@ -326,9 +350,11 @@ def test_summer_and_winter_on_the_ridge():
     (dict(scenario=replace(SUNNY, start_utc=None)), "start_utc"), (dict(rest_soc=0.95), "rest_soc must be"),
     (dict(rest_soc=0.1), "rest_soc must be at least 0.15"), (dict(go_soc=1.5), "go_soc"), (dict(detour=0.9), "detour"),
     (dict(science_every_m=0), "science_every_m"), (dict(science_h=-1), "science_h"),
-    (dict(delay_h=np.zeros((2, 2))), "one row of lanes")])
+    (dict(delay_h=np.zeros((2, 2))), "one row of lanes"), (dict(delay_h="soon"), "delay_h must be"),
+    (dict(delay_h=[]), "one row of lanes; got shape"), (dict(step_h=0), "step_h"),
+    (dict(science_h=[1.0, 2.0]), "science_h must be one number"), (dict(way="x"), "way must be a Way; got 'x'")])
 def test_bad_marches_are_refused(change, words):
-    with pytest.raises(ValueError, match=words):
+    with pytest.raises((ValueError, TypeError), match=words):
         route.march(**dict(way=straight(), design=ROVER, scenario=SUNNY) | change)
 
 

@@ -57,6 +57,41 @@ def test_an_empty_front_has_a_row_without_numbers(front):
     assert list(table.designs) == [len(front), 0] and np.isnan(table.four_wheels[1])
 
 
+@pytest.mark.parametrize("call, words", [
+    (lambda f: rules.front_statistics("x"), r"fronts\[0\] must be a Front; got 'x'"),
+    (lambda f: rules.front_statistics([f, f.designs]), r"fronts\[1\] must be a Front; got Design"),
+    (lambda f: rules.front_statistics([]), "fronts must hold at least one Front"),
+    (lambda f: rules.front_statistics({"mare": f}), r"fronts\[0\] must be a Front; got 'mare'"),
+    (lambda f: rules.crossover("x"), "statistics must be a table of front_statistics; it has no column scenario, obst"),
+    (lambda f: rules.dominated("x", [f]), "front must be a Front"), (lambda f: rules.dominated(f, "x"), r"others\[0\]"),
+    (lambda f: rules.place("x", "wheelbase_m"), "designs must be a Design"),
+    (lambda f: rules.place(f.designs, "wheel_base"), "no design variable 'wheel_base'; nearest are wheelbase_m"),
+    (lambda f: rules.place(f.designs, []), "no design variable"),
+    (lambda f: rules.ballasted(f.designs, MARE, "heavy"), "total_mass_kg must be positive .*'heavy'"),
+    (lambda f: rules.ballasted(f.designs, MARE, np.nan), "total_mass_kg"),
+    (lambda f: rules.swapped(f.designs, wheelbase_m=0.7), "front must be a Front"),
+    (lambda f: rules.swapped(f, wheel_base=0.7), "Design has no field 'wheel_base'; nearest are wheelbase_m"),
+    (lambda f: rediscovery.unit_cube("x"), "designs must be a Design"),
+    (lambda f: rediscovery.rediscover([]), "rovers must not be empty"),
+    (lambda f: rediscovery.rediscover(3), r"rovers\[0\] must be a str; got int"),
+    (lambda f: rediscovery.rediscover("Pragyan", generations=()), "generations must not be empty"),
+    (lambda f: rediscovery.rediscover("Pragyan", generations=(0,)), "generations must be a whole number, at least 1"),
+    (lambda f: rediscovery.rediscover("Pragyan", seeds=["a"]), "seeds must be a whole number"),
+    (lambda f: chance.baselines("x"), "found must be a table of rediscover; it has no column rover, front_designs"),
+    (lambda f: sensitivity.sobol(MARE, metrics=[]), "metrics: no Performance field"),
+    (lambda f: sensitivity.sobol(MARE, design=rdk.random_designs(3, seed=1)), "design must be a single one"),
+    (lambda f: sensitivity.sobol("mare"), "scenario must be a Scenario"),
+    (lambda f: sensitivity.family(NAMES[0], 2, seed="x"), "seed must be a whole number")])
+def test_what_is_no_front_design_or_table_is_refused_by_name(front, call, words):
+    with pytest.raises((ValueError, TypeError), match=words):
+        call(front)
+
+
+def test_one_front_alone_will_do_and_none_beats_nobody(front):
+    assert rules.front_statistics(front).equals(rules.front_statistics([front]))
+    assert not rules.dominated(front, []).any()
+
+
 def test_generations_of_one_search_are_those_of_shorter_searches():
     both = rediscovery.rediscover("Pragyan", population=20, seeds=[3], generations=[4, 10])
     short = rediscovery.rediscover(["Pragyan"], population=20, seeds=[3], generations=[4])

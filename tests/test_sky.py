@@ -147,6 +147,19 @@ def test_what_is_no_skyline_is_refused(wrong):
         sky.lit_fraction(1.0, 0.0, wrong)
 
 
+@pytest.mark.parametrize("call, words", [
+    (lambda: sky.subsolar_point("2026-01-01"), "julian_date must be finite; got '2026-01-01'"),
+    (lambda: sky.subsolar_point([HOURS[0], np.nan]), "julian_date must be finite; got nan at index 1"),
+    (lambda: sky.sun_position(95.0, 0.0, HOURS[0]), "latitude_deg must be at least -90"),
+    (lambda: sky.sun_position(-85.0, None, HOURS[0]), "longitude_deg must be"),
+    (lambda: sky.lit_fraction("high", 0.0), "elevation_deg must be numbers; got 'high'"),
+    (lambda: sky.lit_fraction(1.0, {}, [1.0, 2.0]), "azimuth_deg must be numbers"),
+    (lambda: sky.longest_run([[True, False]]), "flags must have one dimension")])
+def test_what_is_no_number_is_refused_by_name(call, words):
+    with pytest.raises(ValueError, match=words):
+        call()
+
+
 def test_a_skyline_closes_at_north():
     seen = Skyline([10, 100, 190, 280], [1.0, 2.0, 3.0, 4.0])
     np.testing.assert_allclose(seen.at([10, 55, 325, 370, -35]), [1, 1.5, 2.5, 1, 2.5], rtol=1e-12)

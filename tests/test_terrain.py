@@ -87,6 +87,34 @@ def test_bad_maps_are_refused(change, words):
         Terrain(**dict(height_m=np.zeros((3, 3)), step_m=1.0) | change)
 
 
+@pytest.mark.parametrize("call, words", [
+    (lambda g: Terrain("x", 1.0), "height_m must be numbers; got 'x'"),
+    (lambda g: Terrain([[1, 2], [3]], 1.0), "height_m must be numbers"),
+    (lambda g: g.to_xy("x", 0.0), "latitude_deg must be .*'x'"), (lambda g: g.to_xy(-91.0, 0.0), "latitude_deg"),
+    (lambda g: g.to_xy(-80.0, None), "longitude_deg"), (lambda g: g.to_latlon(0.0, np.nan), "y must be finite"),
+    (lambda g: g.cell("x", 0.0), "x must be"), (lambda g: g.cell(0.0, np.nan), "y must be"),
+    (lambda g: g.place("x", 0), "row must be"), (lambda g: g.at(0.0, [[1, 2], [3]]), "y must be numbers"),
+    (lambda g: g.at({}, 0.0), "x must be numbers"), (lambda g: g.hillshade("x"), "azimuth_deg must be"),
+    (lambda g: g.hillshade(10.0, [1.0, 2.0]), "elevation_deg must be one number"),
+    (lambda g: g.skyline([0.0, 1.0], 0.0), "x must be one number"), (lambda g: g.skyline(0.0, 0.0, "x"), "height_m"),
+    (lambda g: g.skyline(0.0, 0.0, farthest_m=[1e3, 2e3]), "farthest_m must be one number"),
+    (lambda g: g.skyline(0.0, 0.0, beyond=["x"]), r"beyond\[0\] must be a Terrain; got 'x'"),
+    (lambda g: g.skyline(0.0, 0.0, beyond=3), r"beyond\[0\] must be a Terrain; got int"),
+    (lambda g: terrain.synthetic(1, like=None), "no map None"), (lambda g: terrain.synthetic("x"), "seed must be")])
+def test_what_is_no_number_or_map_is_refused_by_name(call, words):
+    with pytest.raises((ValueError, TypeError), match=words):
+        call(plane())
+
+
+def test_places_broadcast_and_a_single_map_beyond_will_do():
+    ground = plane()
+    latitude, longitude = ground.to_latlon([0.0, 10.0, 20.0], [[0.0], [5.0]])
+    assert latitude.shape == longitude.shape == (2, 3)
+    assert (latitude[1, 2], longitude[1, 2]) == ground.to_latlon(20.0, 5.0)
+    wide = plane(0.3, cells=40, step_m=100.0)
+    assert ground.skyline(0.0, 0.0, beyond=wide) == ground.skyline(0.0, 0.0, beyond=[wide])
+
+
 # ---- slope and shade ---------------------------------------------------------------------------------------
 
 @given(st.floats(-0.7, 0.7), st.floats(-0.7, 0.7))
@@ -254,6 +282,7 @@ def test_pds_that_cannot_be_placed(tmp_path):
                            (dict(radius=6378.1), "radius_m must be at least 1.73e[+]06 .*; got 6378100.0"),
                            (dict(rows=5), "label says 5 x 6"),
                            (dict(step="many"), "MAP_SCALE must be a number; got 'MANY <"),
+                           (dict(bits=12), "SAMPLE_BITS must be 16 or 32 or 64; got '12'"),
                            (dict(kind="VAX_REAL"), "sample type must be LSB_INTEGER")):
         with pytest.raises(ValueError, match=message):
             terrain.read(write_pds(tmp_path, raw, **words))
@@ -322,6 +351,9 @@ def test_png(tmp_path):
     np.testing.assert_allclose(ground.height_m, raw * 0.1 - 600, rtol=1e-15)
     assert (ground.west_m, ground.north_m, ground.step_m, ground.latitude_deg) == (-30, 20, 10, -90)
     assert terrain.read(tmp_path / "a.png", **geometry, latitude_deg=25.0).latitude_deg == 25
+    for wrong, words in ((dict(scale="x"), "scale must be"), (dict(latitude_dg=5.0), "latitude_dg")):
+        with pytest.raises((ValueError, TypeError), match=words):
+            terrain.read(tmp_path / "a.png", **geometry | wrong)
     with pytest.raises(ValueError, match="give offset, west_m"):
         terrain.read(tmp_path / "a.png", scale=1.0, north_m=0.0, step_m=1.0)
     (tmp_path / "terrain.csv").write_text("file,scale,offset,west_m,north_m,step_m,projection\n"
