@@ -345,15 +345,19 @@ def why(metric, names, values, before, after, baseline, size=SIZE):
                         + "; ".join(f"{name} {step:+.3g}" for name, step in steps) + ".")
 
 
-def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, size=SIZE, log=False):
-    """One metric along one variable, with its interval (where, low, high), this design, and the published rovers."""
+def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, size=SIZE, log=False, old=False):
+    """One metric along one variable, with its interval (where, low, high), this design, and the published rovers.
+
+    The interval may be None; it is paler where it is `old`, that of a state before.
+    """
     if not np.isfinite(nominal).any():
         return message(size, f"{label(metric)[0]} has no value at any {x_label}: the wheel is buried")
-    axes = Axes(size, (float(values[0]), float(values[-1])), span(nominal, *band[1:], here[1]), log=log)
+    axes = Axes(size, (float(values[0]), float(values[-1])), span(nominal, *(band or ())[1:], here[1]), log=log)
     axes.parts.append(HATCH)
     axes.stretches(np.concatenate([values[:1], (values[1:] + values[:-1]) / 2, values[-1:]]), stalled, **HATCHED)
     axes.frame(*label(metric), x_label)
-    axes.area(*band)
+    if band is not None:
+        axes.area(*band, opacity=0.07 if old else 0.18)
     axes.line(values, nominal)
     points = [] if rovers is None else [(x, float(np.clip(y, *axes.ys)), name) for x, y, name in zip(*rovers)
                                         if values[0] <= x <= values[-1] and np.isfinite(y)]
@@ -411,7 +415,7 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
     """A front: one metric against another, coloured by a third; dots can be picked, this design is a cross.
 
     `faded` marks dots that miss a demand, `stale` says that the front belongs to another mission; `designs` are told
-    with the dots. The scale of the metric "odds" is 0 to 1.
+    with the dots. The scale of the metric "odds" is 0 to 1; a dot whose colour is not yet known is hollow.
     """
     if not len(x):
         return message(size, f"{title}: an empty front, no design meets the constraints.")
@@ -424,9 +428,11 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
     columns += [] if designs is None else [(v.label, v.unit if v.unit != "1" else "", getattr(designs, n).tolist())
                                            for n, v in DESIGN_SPACE.items()]
     for i, point in enumerate(zip(*(values for *_, values in columns))):
-        said = [f"{words} {value:.4g} {unit}".strip() for (words, unit, _), value in zip(columns, point)]
+        said = [f"{words} {value:.4g} {unit}".strip() for (words, unit, _), value in zip(columns, point)
+                if value == value]
         axes.mark(x[i], y[i], cls="rdk-pick", size=6, inside=f"<title>{', '.join(said)}</title>",
-                  fill=shade((colour[i] - low) / (high - low)), stroke="currentColor",
+                  fill=shade((colour[i] - low) / (high - low)) if colour[i] == colour[i] else "transparent",
+                  stroke="currentColor",
                   stroke_width=2.6 if i == picked else 0.7, opacity=0.25 if faded is not None and faded[i] else 1,
                   tabindex=0 if i == (picked or 0) else -1, role="button", data_do=f"point:{i}",
                   aria_label=", ".join(said[:3]))
@@ -438,5 +444,6 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
     axes.scale(low, high, label(names[2])[0])
     axes.parts = [element("g", "", "".join(axes.parts), opacity=0.45 if stale else 1), text(8, 30, stale, "bad s"),
                   text(8, 14, title, "b" if 7.5 * len(title) < size[0] else "s b")]
-    spans = ", ".join(f"{named(n)} from {min(v):.3g} to {max(v):.3g}" for n, v in zip(names, (x, y, colour)))
+    spans = ", ".join(f"{named(n)} from {min(v):.3g} to {max(v):.3g}" for n, v in zip(names, (x, y, colour))
+                      if np.isfinite(v).all())
     return axes.picture(f"{title}. Front of {len(x)} designs: {spans}. {stale}".rstrip(), "group")

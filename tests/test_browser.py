@@ -16,6 +16,7 @@ from rdk.explorer.inputs import DESIGN, MISSION, NUMBERS, SOIL, VIEWS, from_text
 
 if browser.CHROMIUM is None and os.environ.get("CI"):
     pytest.fail("no Chromium on CI", pytrace=False)
+expect.set_options(timeout=60_000)                       # states are awaited, however busy the machine is
 pytestmark = pytest.mark.skipif(browser.CHROMIUM is None, reason="no Chromium or Chrome on this machine")
 
 OPEN = """async path => { const app = window.jupyterapp; await app.restored;

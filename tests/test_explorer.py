@@ -39,7 +39,7 @@ def made():
 @pytest.fixture
 def explorer(made):
     """The one explorer of this module, as it starts."""
-    made._model, made.front, made._recipe, made._pins = rdk.Model(), None, None, []
+    made.front, made._recipe, made._pins = None, None, []
     made._notice = made._drawer = ("", "")
     made.set(rover="Rashid-1", mission=MARE, preset="paper", view="log", live=False, population=50, generations=60,
              why_metric="range_km", baseline="MoonRanger", sweep_first="wheel_radius_m", sweep_second="",
@@ -273,7 +273,7 @@ def test_undo_redo_and_reset(explorer):
     for values in {"wheel_radius_m": 0.12}, {"mission": POLAR}, {"peak_wheel_torque_nm": 2.0}, {"rover": "Pragyan"}:
         explorer.set(**values)
         states.append({**explorer.state, "seed": 13})
-    explorer.state["seed"] = 13                          # of the search: no part of it
+    explorer.set(seed=13)                                # of the search: no part of it
     for state in states[-2::-1]:
         explorer.undo()
         assert explorer.state == state
@@ -352,7 +352,13 @@ def test_a_link_brings_everything_back(explorer):
         assert dataclasses.replace(other.scenario,
                                    problem=Problem()) == dataclasses.replace(explorer.scenario, problem=Problem())
         assert other.scenario.problem.constraints == explorer.scenario.problem.constraints
-    explorer.set(rover="Rashid-1", mission=POLAR, view="log")
+    explorer.set(mission=POLAR, slope_deg=12.5, minimum_slope_deg=21.0, minimum_charge=0.3, survive=1,
+                 slope_goal="ignore", population=24, generations=7, seed=5)
+    for start in MARE, "highland_slope_capability":      # the same search, whatever stood there before
+        other = Explorer(scenario=start, state=explorer.link)
+        assert other._problem() == explorer._problem()
+        assert other.scenario.replace(problem=Problem()) == explorer.scenario.replace(problem=Problem())
+    explorer.set(rover="Rashid-1", mission=POLAR, view="log", population=50, generations=60)
     explorer.set(hub_no_load_speed_rad_s=5.0)
     assert "wheel" not in explorer.link and "mission=polar_prospecting" in explorer.link
     wrong = Explorer(state="wheel_radius_m=0.12&wheel_width_m=7&soil=mud&nonsense=1")
@@ -371,7 +377,7 @@ def test_site_and_date_bring_the_real_sun_and_go_everywhere(explorer):
         latitude_deg=place["latitude_deg"], longitude_deg=place["longitude_deg"])
     assert explorer.scenario == wanted and "from 2026-11-26T12:00" in told(explorer)["t"]["summary"]
     assert "after 2026-11-26T12:00" in explorer.parts["picture"].value
-    again = Explorer(state=explorer.link)                # a link carries demands, not goals
+    again = Explorer(state=explorer.link)
     assert again.scenario.replace(problem=wanted.problem) == wanted and again.state["site_height_m"] == 10
     kept, space = explorer.file("design.json"), {}
     exec(explorer.python(), space)
@@ -797,6 +803,32 @@ def test_dots_that_miss_a_demand_fade(explorer):
     assert faded == list(np.flatnonzero(explorer.front.performance.total_mass_kg > explorer.state["maximum_mass_kg"]))
 
 
+def test_a_front_is_coloured_by_the_odds_of_the_demands(explorer, monkeypatch):
+    monkeypatch.setattr(explorer_module, "RATED", 4)
+    explorer.set(mission=POLAR, population=16, generations=4, view="optimise", front_colour="odds")
+    explorer.optimise(wait=True)
+    front, calls, sample = explorer.front, [], explorer_module.intervals
+    assert len(front) > 4
+    explorer.set(minimum_slope_deg=23.0, minimum_range_km=12.0)
+    assert_current(explorer)
+    demands = [("feasible", ">=", 1), *explorer.scenario.problem.constraints]
+    wanted = [rdk.intervals(design, rdk.scenario(POLAR), draws=answers.DRAWS).share(demands)
+              for design in front.designs]
+    np.testing.assert_array_equal(explorer._odds[1], wanted)                 # the same draws for every design
+    assert len(set(wanted)) > 2
+    said = re.findall(r'data-do="point:\d+" aria-label="([^"]*)"', explorer._picture)
+    assert [f"odds of the demands {share:.4g}" in words for share, words in zip(wanted, said)] == [True] * len(front)
+    monkeypatch.setattr(explorer_module, "intervals",
+                        lambda design, *given, **more: calls.append(design.shape) or sample(design, *given, **more))
+    explorer.set(wheel_radius_m=0.12)                    # the rover on the sliders is no part of it
+    explorer.settle()
+    assert calls == [()]
+    explorer.set(maximum_mass_kg=float(np.median(front.performance.total_mass_kg)))
+    explorer.settle()
+    assert sum(shape[0] for shape in calls if shape) == len(front)
+    assert np.flatnonzero(explorer._odds[1] > 0.9).size < len(front)
+
+
 def test_cancel_ends_the_search_and_keeps_what_it_found(explorer, monkeypatch):
     third, search = threading.Event(), explorer_module.pareto_front
 
@@ -897,7 +929,7 @@ def test_solve_finds_the_nearest_value_that_meets_the_demands(explorer):
     before = explorer.design
     events(explorer, ["do", "solve"])
     assert explorer.design == before and "mass ≤ 2" in shown(explorer, "drawer")
-    with pytest.raises(ValueError, match="no design variable 'slope_deg'"):
+    with pytest.raises(ValueError, match="solve_variable must be one of wheel_radius_m"):
         explorer.solve("slope_deg")
 
 

@@ -1,15 +1,17 @@
 """What the explorer shows of one state: readings, the verdict, pictures and words. Functions of records, no widgets."""
 from __future__ import annotations
 
+from collections import namedtuple
+
 import numpy as np
 
 from .. import explain, pictures
 from ..design import DESIGN_SPACE
 from ..mission import evaluate
 from ..report import published
-from ..sampling import attribution, replaced, sweep, uncertain_inputs
+from ..sampling import attribution, holds, replaced, sweep, uncertain_inputs
 from ..uncertainty import DRAWS
-from .inputs import NUMBERS, label
+from .inputs import NUMBERS, ODDS, label
 from .page import card, details, verdict
 
 BAND_DRAWS, CURVE, MAP = 256, 61, 25                     # of the readings' draws the first; points of a sweep
@@ -18,148 +20,240 @@ ROWS = (("range_km", 2), ("total_mass_kg", 2), ("slope_capability_deg", 1), ("en
         ("cruise_speed_m_s", 3), ("obstacle_capability_m", 3), ("minimum_soc", 2), ("average_solar_power_w", 1))
 
 
+Answer = namedtuple("Answer", "now design scenario model result binding before ghosts reference spans sure front odds "
+                    "band", defaults=(False, None, (None, None), (None, None)))
+"""What the page shows of one state: inputs `now`, the result `before` the last change, `ghosts` as (letter, class,
+result) of pinned designs, the `reference` of "why"; `spans` are intervals, older ones unless `sure`, and `odds` and
+`band` are pairs whose first part says what they are of."""
+
+
 def words(value, digits, unit=""):
     """A number for people."""
     return "none" if np.isnan(value) else f"{value:.{digits}f} {unit}".rstrip().replace("-", "−")
 
 
-def judged(limit):
-    """A limit, and whether it is met."""
-    return ("✓ met: " if limit.met else "✗ missed: ") + limit.words
+def asked(constraints):
+    """The demands of a problem; that the rover drives comes first."""
+    return [("feasible", ">=", 1), *constraints]
 
 
 def meets(performance, constraints):
     """Whether a design, or each of a population, drives and meets every demand."""
-    met = np.asarray(performance.feasible)
-    for metric, sign, limit in constraints:
-        value = np.asarray(getattr(performance, metric), float)
-        met = met & (value >= limit if sign == ">=" else value <= limit)
-    return met
+    return np.all([holds(performance, demand) for demand in asked(constraints)], axis=0)
 
 
-def readings(design, scenario, result, spans, before, model, old):
-    """The five cards and the table of all readings; `spans` are the intervals, old ones or None."""
-    wanted = {(metric, sign): limit for metric, sign, limit in scenario.problem.constraints}
-    needed = {limit.metric: limit for limit in explain.limits(design, scenario, result, model=model)}
-    route, cards = scenario.traverse_limit_km, []
-    slope = max(scenario.slope_deg, wanted.get(("slope_capability_deg", ">="), 0.0))
-    asked = wanted.get(("range_km", ">="), 0.0)
-    low, high = model.operating_temperature_min_c, model.operating_temperature_max_c
-    rows = (  # title, field, digits, requirement, its sign, what it says
-        ("Range", "range_km", 1, asked if asked > 0.1 else None if np.isinf(route) else route, ">=",
-         f"asked: {asked:g} km" if asked > 0.1 else f"route of {route:g} km" if np.isfinite(route)
-         else "no end of the route"),
-        ("Mass", "total_mass_kg", 1, wanted.get(("total_mass_kg", "<=")), "<=",
-         f"at most {wanted['total_mass_kg', '<=']:.3g} kg" if ("total_mass_kg", "<=") in wanted else "with payload"),
-        ("Slope", "slope_capability_deg", 1, slope, ">=", f"needs {slope:g}°"),
-        ("Energy", "energy_balance_pct", 0, 0.0, ">=", "needs 0 % or more"),
-        ("Night", "cold_temperature_c", 0, low, ">=", f"noon {result.hot_temperature_c:.0f} °C; allowed {low:g} to "
-         f"{high:g}".replace("-", "−")))
-    for title, name, digits, need, sign, note in rows:
-        value, unit = float(getattr(result, name)), label(name)[1]
-        span = None if spans is None else (float(spans.low[name]), float(spans.high[name]))
-        met = need is None or (value >= need if sign == ">=" else value <= need)
-        if name == "slope_capability_deg":
-            met = not result.stalled and not result.buried and met | (need == scenario.slope_deg)
-        elif name == "cold_temperature_c":
-            met = bool(result.thermal_survival)
-        risky = met and need is not None and span is not None and (span[0] < need if sign == ">=" else span[1] > need)
-        plain = need is None or name == "range_km" and asked <= 0.1 and result.range_km > 0
-        status = "none" if plain else "risk" if risky else "met" if met else "missed"
-        if span is not None and name != "cold_temperature_c":
-            low_end, high_end = ("|" * bool(clamp) for clamp in spans.clamped[name])         # the end is a limit
-            note = f"{low_end}{words(span[0], digits)} – {words(span[1], digits)}{high_end} (90 %); {note}"
-        if name == "slope_capability_deg" and spans is not None and 0 < spans.low["stalled"] < 1:
-            note = f"{note}; {100 * spans.low['stalled']:.0f} % of draws stall"
-        change = None if before is None else value - float(getattr(before, name))
-        still = change is None or not np.isfinite(change) or abs(change) < 0.5 * 10.0**-digits
-        moved = "" if still else f"{change:+.{digits}f}"
-        cards.append(card(title, words(value, digits), unit, status, note, moved.replace("-", "−"), value, span, need,
-                          old))
-    table = []
+def fits(front, scenario, model):
+    """Whether a front belongs to the mission and the model."""
+    return front.scenario.replace(name="") == scenario.replace(name="", problem=front.scenario.problem) and (
+        front.model == model)
+
+
+# ---- readings -------------------------------------------------------------------------------------------------
+
+def cards(a):
+    """The five readings."""
+    result, spans, drawn = a.result, a.spans, []
+    wanted = {(metric, sign): limit for metric, sign, limit in a.scenario.problem.constraints}
+    route, far = a.scenario.traverse_limit_km, wanted.get(("range_km", ">="), 0.0)
+    heaviest = wanted.get(("total_mass_kg", "<="))
+    slope = max(a.scenario.slope_deg, wanted.get(("slope_capability_deg", ">="), 0.0))
+    steep = slope > a.scenario.slope_deg and result.slope_capability_deg < slope
+    low, high = a.model.operating_temperature_min_c, a.model.operating_temperature_max_c
+    rows = (  # field, title, digits, requirement, its sign, words; whether it is met where the value does not say
+        ("range_km", "Range", 1, far, ">=", f"asked: {far:g} km") if far > 0.1 else
+        ("range_km", "Range", 1, route, ">=", f"route of {route:g} km", "none" if result.range_km > 0 else False)
+        if np.isfinite(route) else ("range_km", "Range", 1, None, ">=", "no end of the route", "none"),
+        ("total_mass_kg", "Mass", 1, heaviest, "<=", f"at most {heaviest:.3g} kg") if heaviest else
+        ("total_mass_kg", "Mass", 1, None, "<=", "with payload", "none"),
+        ("slope_capability_deg", "Slope", 1, slope, ">=", f"needs {slope:g}°", not (result.stalled or steep)),
+        ("energy_balance_pct", "Energy", 0, 0.0, ">=", "needs 0 % or more"),
+        ("cold_temperature_c", "Night", 0, low, ">=", f"noon {result.hot_temperature_c:.0f} °C; allowed {low:g} to "
+         f"{high:g}".replace("-", "−"), bool(result.thermal_survival)))
+    for name, title, digits, need, sign, note, *met in rows:
+        value, span = float(getattr(result, name)), spans and (float(spans.low[name]), float(spans.high[name]))
+        met = met[0] if met else bool(holds(result, (name, sign, need)))
+        risky = met is True and span and (span[0] < need if sign == ">=" else span[1] > need)
+        status = "none" if met == "none" else "risk" if risky else "met" if met else "missed"
+        if span and name != "cold_temperature_c":
+            ends = ("|" * bool(clamp) for clamp in spans.clamped[name])      # the end is a limit
+            note = "{}{} – {}{} (90 %); {}".format(next(ends), *(words(end, digits) for end in span), next(ends), note)
+        if span and name == "slope_capability_deg" and 0 < spans.low["stalled"] < 1:
+            note += f"; {100 * spans.low['stalled']:.0f} % of draws stall"
+        change = value - float(getattr(a.before or result, name))
+        moved = f"{change:+.{digits}f}" if np.isfinite(change) and abs(change) >= 0.5 * 10.0**-digits else ""
+        drawn.append(card(title, words(value, digits), label(name)[1], status, note, moved.replace("-", "−"), value,
+                          span, need, not a.sure))
+    return f'<div class="rdk-cards">{"".join(drawn)}</div>'
+
+
+def readings(a):
+    """Rows of the table of all readings: name, value, interval, limit."""
+    needed = {limit.metric: ("✓ met: " if limit.met else "✗ missed: ") + limit.words
+              for limit in explain.limits(a.design, a.scenario, a.result, model=a.model)}
+    rows = []
     for name, digits in ROWS:
-        value, unit = float(getattr(result, name)), label(name)[1]
-        span = "" if spans is None else f"{words(spans.low[name], digits)} to {words(spans.high[name], digits)}"
-        limit = needed.get(name)
-        table.append((label(name)[0], words(value, digits, unit), span, "" if limit is None else judged(limit)))
-    for name, title in (("stalled", "drives the slope"), ("thermal_survival", "survives heat and cold")):
-        share = np.nan if spans is None else float(spans.low[name])
-        share, holds = (1 - share, not result.stalled) if name == "stalled" else (share, result.thermal_survival)
-        table.append((title, "yes" if holds else "no", f"in {100 * share:.0f} % of draws" if share == share else "",
-                      judged(needed[name])))
-    return f'<div class="rdk-cards">{"".join(cards)}</div>', table
+        span = "" if a.spans is None else " to ".join(words(end[name], digits) for end in (a.spans.low, a.spans.high))
+        rows.append((label(name)[0], words(float(getattr(a.result, name)), digits, label(name)[1]), span,
+                     needed.get(name, "")))
+    for title, name, other in (("drives the slope", "stalled", True),
+                               ("survives heat and cold", "thermal_survival", False)):
+        share = "" if a.spans is None else f"in {100 * abs(other - a.spans.low[name]):.0f} % of draws"
+        rows.append((title, "yes" if getattr(a.result, name) != other else "no", share, needed[name]))
+    return rows
 
 
-def answer(design, scenario, result, binding, spans, before, model, old=False):
+def answer(a):
     """HTML of the verdict with its readings, and the rows of the table."""
-    met, sentence = explain.verdict(design, scenario, result, model=model)
-    cards, table = readings(design, scenario, result, spans, before, model, old)
-    status = "missed" if not met else "risk" if "! at risk" in cards else "met"
+    met, sentence = explain.verdict(a.design, a.scenario, a.result, model=a.model)
+    shown, table = cards(a), readings(a)
     odds = ""
-    if spans is not None:
-        share = 100 * float(spans.share([("feasible", ">=", 1), *scenario.problem.constraints]))
-        asked = [limit for metric, _, limit in scenario.problem.constraints if (metric, limit) != ("range_km", 0.1)]
-        odds = f"{'Meets all demands' if asked else 'Drives'} in {share:.0f} % of {DRAWS:,} draws."
-    said = explain.levers(design, scenario, result, binding.key, model=model)
-    buttons = [(f"lever:{lever[0]}", "{1} +10 %: {2:+.2g} {3}".format(*lever)) for lever in said[:3] if lever[2] > 0]
-    head = binding.sentence
+    if a.spans is not None:
+        share = 100 * float(a.spans.share(asked(a.scenario.problem.constraints)))
+        more = any((metric, limit) != ("range_km", 0.1) for metric, _, limit in a.scenario.problem.constraints)
+        odds = f"{'Meets all demands' if more else 'Drives'} in {share:.0f} % of {DRAWS:,} draws."
+    levers = explain.levers(a.design, a.scenario, a.result, a.binding.key, model=a.model)
+    buttons = [(f"lever:{lever[0]}", "{1} +10 %: {2:+.2g} {3}".format(*lever)) for lever in levers[:3] if lever[2] > 0]
+    head = a.binding.sentence
     if buttons:
-        head = binding.sentence.split(":")[0] + ". Try" if binding.key not in ("soil", "traction") else "Try"
-    header = ("reading", "value", "90 % interval", "needed")
-    return verdict(status, sentence, head, buttons, odds) + cards + details(header, table), table
+        head = head.split(":")[0] + ". Try" if a.binding.key not in ("soil", "traction") else "Try"
+    status = "missed" if not met else "risk" if "! at risk" in shown else "met"
+    return (verdict(status, sentence, head, buttons, odds) + shown
+            + details(("reading", "value", "90 % interval", "needed"), table)), table
 
 
-def span_of(name, count):
-    """Values across an input's slider: whole where it must be, evenly in ratio where the slider is logarithmic."""
-    f = NUMBERS[name]
-    if name == "grouser_count":
-        return np.arange(f.low, f.high + 1)
-    return np.linspace(f.low, f.high, count) if f.step else np.geomspace(f.low, f.high, count).round(9)
+def against(a, pins):
+    """The pinned designs for the tray: letter, name, what each has more or less than the present one."""
+    return [(letter, name, " · ".join(
+        f"{round(getattr(other, metric) - getattr(a.result, metric), 1) + 0.0:+.1f} {label(metric)[1]}".replace("-", "−")
+        for metric in ("total_mass_kg", "range_km", "slope_capability_deg")))
+        for (letter, _, other), (name, _) in zip(a.ghosts, pins)]
 
 
-def swept(design, scenario, model, fields, metric, size):
-    """The picture of a sweep over one field or two."""
-    f, factors = [NUMBERS[name] for name in fields], [NUMBERS[name].factor for name in fields]
-    now = {**design.numbers(), **scenario.numbers(), **scenario.soil.numbers(), **model.numbers()}
-    axes = [label(name)[0] + (f" ({label(name)[1]})" if label(name)[1] else "") for name in fields]
-    here = [now[name] * factor for name, factor in zip(fields, factors)]
-    over = {name: span_of(name, MAP if len(fields) == 2 else CURVE) for name in fields}
-    found = sweep(design, scenario, over, model=model).performance
-    grid = np.asarray(getattr(found, metric), float)
-    blocked = np.asarray(found.stalled | found.buried)
-    shown = [over[name] * factor for name, factor in zip(fields, factors)]
-    if len(fields) == 2:
-        return pictures.contour(*axes, metric, *shown, grid, blocked, here, size)
-    name, values = fields[0], over[fields[0]]
-    jump = int(np.abs(np.diff(np.nan_to_num(grid))).argmax())                # a cliff is drawn as one, not as a ramp
-    if name != "grouser_count":
-        values = np.sort(np.concatenate([values, np.linspace(values[jump], values[jump + 1], 12)[1:-1]]))
-    line = sweep(design, scenario, {name: values}, model=model).performance
-    knots = values[::6]
-    draws = {n: v[:BAND_DRAWS, None] for n, v in uncertain_inputs(scenario, draws=DRAWS, model=model).items()}
-    *changed, coefficients = replaced(design, scenario, model, {**draws, name: knots})
-    cloud = evaluate(*changed, model=coefficients)
-    band = np.quantile(np.nan_to_num(np.asarray(getattr(cloud, metric), float)), [0.05, 0.95], axis=0)
-    rovers = None
-    if name in DESIGN_SPACE:                             # a mission's field is not the rovers' own
-        names, fleet = published()
-        others = evaluate(fleet, scenario, model=model)
-        rovers = getattr(fleet, name) * factors[0], np.asarray(getattr(others, metric), float), names
-    own = float(getattr(evaluate(design, scenario, model=model), metric))
-    return pictures.curve(axes[0], metric, values * factors[0], np.asarray(getattr(line, metric), float),
-                          line.stalled | line.buried,
-                          (knots * factors[0], *band), (here[0], own), rovers, size, log=not f[0].step)
+# ---- pictures: each of an Answer and a size -------------------------------------------------------------------
+
+def log(a, size):
+    ghosts = [(letter, cls, found.log) for letter, cls, found in a.ghosts]
+    return pictures.log(a.result, a.scenario, a.model.soc_initial, size, ghosts)
 
 
-def explained(design, reference, name, scenario, model, metric, size):
-    """The picture of what each variable contributes to the difference from a reference."""
-    found = attribution(design, reference, scenario, model=model)
+def mass(a, size):
+    return pictures.mass(a.result, size, spans(a, "total_mass_kg")[0], a.ghosts)
+
+
+def wheel(a, size):
+    return pictures.wheel(a.result, a.design, a.scenario, a.model, size)
+
+
+def fleet(a, size):
+    found = spans(a, "total_mass_kg", "range_km") if a.sure else None
+    return pictures.fleet(a.result, rovers(a, "total_mass_kg", "range_km"), size, found, a.ghosts)
+
+
+def spans(a, *names):
+    """The intervals of some metrics, None each while they are not those of this state."""
+    return [(a.spans.low[name], a.spans.high[name]) if a.sure else None for name in names]
+
+
+def rovers(a, *names):
+    """Metrics of the published rovers on this mission, and their names."""
+    known, designs = published()
+    found = evaluate(designs, a.scenario, model=a.model)
+    return *(np.asarray(getattr(found, name), float) for name in names), known
+
+
+def why(a, size):
+    """What each variable contributes to the difference from a reference."""
+    metric = a.now["why_metric"]
+    found = attribution(a.design, a.reference, a.scenario, model=a.model, metrics=(metric,))
     if metric not in found.contributions:
         return pictures.message(size, f"{label(metric)[0]} has no value in some mixture of the two designs (a buried "
                                 "wheel), so that its difference cannot be shared out. Choose another metric.")
     names = [label(n)[0] if n in NUMBERS else "wheels" for n in DESIGN_SPACE]
     return pictures.why(metric, names, found.contributions[metric], float(getattr(found.baseline_performance, metric)),
-                        float(getattr(found.performance, metric)), name, size)
+                        float(getattr(found.performance, metric)), a.now["baseline"], size)
+
+
+def span_of(name, count):
+    """Values across an input's slider: whole where it must be, evenly in ratio where the slider is logarithmic."""
+    f = NUMBERS[name]
+    if f.whole:
+        return np.arange(f.low, f.high + 1)
+    return np.linspace(f.low, f.high, count) if f.step else np.geomspace(f.low, f.high, count).round(9)
+
+
+def swept_over(now):
+    """The fields of a sweep, one or two, with their values."""
+    names = dict.fromkeys(filter(None, (now["sweep_first"], now["sweep_second"])))
+    return {name: span_of(name, MAP if len(names) == 2 else CURVE) for name in names}
+
+
+def _swept(a):
+    """What a sweep over one field shows, so that a band of another is not taken for its own."""
+    return a.now["sweep_first"], a.now["sweep_metric"]
+
+
+def band_of(a):
+    """The 90 % interval along a sweep over one field: what it is of, and (values, low, high)."""
+    name, metric = _swept(a)
+    knots = span_of(name, CURVE)[::5]
+    draws = {n: v[:BAND_DRAWS, None] for n, v in uncertain_inputs(a.scenario, draws=DRAWS, model=a.model).items()}
+    *changed, model = replaced(a.design, a.scenario, a.model, draws | {name: knots})
+    values = np.asarray(getattr(evaluate(*changed, model=model), metric), float)
+    return _swept(a), (knots * NUMBERS[name].factor, *np.quantile(np.nan_to_num(values), [0.05, 0.95], axis=0))
+
+
+def swept(a, size):
+    """A sweep over one field, or a map over two."""
+    over, metric = swept_over(a.now), a.now["sweep_metric"]
+    fields = {name: NUMBERS[name] for name in over}
+    now = {**a.design.numbers(), **a.scenario.numbers(), **a.scenario.soil.numbers(), **a.model.numbers()}
+    axes = [f.label + (f" ({f.unit})" if f.unit else "") for f in fields.values()]
+    here = [now[name] * f.factor for name, f in fields.items()]
+
+    def found(over):
+        p = sweep(a.design, a.scenario, over, model=a.model).performance
+        return np.asarray(getattr(p, metric), float), np.asarray(p.stalled | p.buried)
+
+    values, stalled = found(over)
+    if len(over) == 2:
+        shown = [over[name] * f.factor for name, f in fields.items()]
+        return pictures.contour(*axes, metric, *shown, values, stalled, here, size)
+    (name, points), (f,) = *over.items(), fields.values()
+    jump = int(np.abs(np.diff(np.nan_to_num(values))).argmax())              # a cliff is drawn as one, not as a ramp
+    if not f.whole:
+        more = np.linspace(points[jump], points[jump + 1], 12)[1:-1]
+        points, values, stalled = (np.insert(old, jump + 1, new) for old, new in zip(
+            (points, values, stalled), (more, *found({name: more}))))
+    others = None
+    if name in DESIGN_SPACE:                             # a mission's field is not the rovers' own
+        others = getattr(published()[1], name) * f.factor, *rovers(a, metric)
+    return pictures.curve(axes[0], metric, points * f.factor, values, stalled,
+                          a.band[1] if a.band[0] == _swept(a) else None, (here[0], float(getattr(a.result, metric))),
+                          others, size, log=not f.step, old=not a.sure)
+
+
+def front(a, size):
+    """The last front, one metric against another."""
+    front = a.front
+    if front is None:
+        return (f'<div style="padding:60px 20px;text-align:center;width:{size[0] - 60}px">No front yet: designs that '
+                'no other beats in every goal.<br><br><button type="button" class="rdk-btn rdk-main" data-do="run">'
+                "Run search</button></div>")
+    names = [a.now["front_" + key] for key in ("x", "y", "colour")]
+    rated = a.odds[1] if a.odds[0] == (front, asked(a.scenario.problem.constraints)) else None
+    columns = [np.asarray(getattr(front.performance, name), float) if name != ODDS
+               else np.full(len(front), np.nan) if rated is None else rated for name in names]
+    where = front.scenario.name.replace("_", " ")
+    stale = "" if fits(front, a.scenario, a.model) else f"searched for {where} as it was: run again"
+    same = np.all([np.equal(getattr(front.designs, name), a.now[name]) for name in DESIGN_SPACE], axis=0)
+    picked = int(same.argmax()) if same.any() else None
+    title = f"{'Live front' if a.now['live'] else 'Front'} of {where}: {len(front)} designs"
+    return pictures.front(*columns, names, [float(getattr(a.result, name)) for name in names[:2]], size, picked,
+                          ~meets(front.performance, a.scenario.problem.constraints), title, stale or front.message,
+                          a.ghosts, front.designs)
+
+
+PICTURES = {"log": log, "mass": mass, "wheel": wheel, "fleet": fleet, "why": why, "sweep": swept, "optimise": front}
 
 
 def solved(design, scenario, model, name):
@@ -168,15 +262,14 @@ def solved(design, scenario, model, name):
     The value is None where no value does, in which case the sentence says which demands stand in the way.
     """
     f = NUMBERS[name]
-    values = np.unique(np.concatenate([span_of(name, 400), [getattr(design, name)]]))
+    values = np.unique(np.append(span_of(name, 400), getattr(design, name)))
     *changed, _ = replaced(design, scenario, model, {name: values})
-    found = evaluate(*changed, model=model)
-    met = meets(found, scenario.problem.constraints)
+    found, demands = evaluate(*changed, model=model), scenario.problem.constraints
+    met = meets(found, demands)
     if met.any():
         best = values[met][np.abs(np.log((values[met] + 1e-3) / (getattr(design, name) + 1e-3))).argmin()]
         return float(best), f"{f.label} of {f.words(float(f'{best:.4g}'))} {f.unit} meets the demands"
-    apart = [f"{label(metric)[0]} {'≥' if sign == '>=' else '≤'} {limit:g}" for metric, sign,
-             limit in scenario.problem.constraints
+    apart = [f"{label(metric)[0]} {'≥' if sign == '>=' else '≤'} {limit:g}" for metric, sign, limit in demands
              if not meets(found, [(metric, sign, limit)]).any()]
-    return None, (f"no {f.label} from {f.words(f.low)} to {f.words(f.high)} {f.unit} meets the demands" +
-                  (": " + ", ".join(apart) if apart else ""))
+    return None, (f"no {f.label} from {f.words(f.low)} to {f.words(f.high)} {f.unit} meets the demands"
+                  + ": " * bool(apart) + ", ".join(apart))

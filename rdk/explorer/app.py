@@ -6,6 +6,7 @@ nothing stale reads as new. Everything also runs without a browser: `set` an inp
 """
 from __future__ import annotations
 
+import base64
 import html
 import json
 import math
@@ -16,23 +17,22 @@ import time
 import ipywidgets as W
 import numpy as np
 
-from .. import catalog, explain, pictures
-from .._fields import require
-from ..design import DESIGN_SPACE, Design, Model, Scenario
+from .. import catalog, explain
+from ..design import Model
 from ..mission import evaluate
-from ..report import published
 from ..rover_picture import rover_picture
 from ..sampling import intervals
 from ..sizing import size
 from ..tradespace import pareto_front
 from . import answers, page
-from .inputs import DESIGN, NUMBERS, START, label, place
-from .state import PINS, State, check_variable, plain
+from .inputs import DESIGN, NUMBERS, ODDS, check, label, place
+from .state import PINS, State, plain
 from .worker import Refresher
 
 LIVE = 40, 24                                            # population and generations of a live front from nothing
 SLOW = "why", "sweep", "optimise"                        # views whose picture may come after the readings
 WIDE = 1000                                              # pixels from which a second picture stands beside the first
+RATED = 8                                                # designs whose odds are computed between two looks for news
 
 
 class Explorer(State):
@@ -75,16 +75,13 @@ class Explorer(State):
     """
 
     def __init__(self, rover="Rashid-1", scenario="equatorial_mare_traverse", *, view="log", model=Model(), state=""):
-        self.error, self.intervals, self.binding = "", None, None
-        self._thread, self._stop, self._heard, self._table = None, threading.Event(), 0, []
-        self._drawer = self._progress = ("", "")
-        self._picture = self._status = self._shown = ""
-        self._app, self._size = os.environ.get("SERVER_SOFTWARE", "").startswith("voila"), (600, 380)
-        self._refresher = None
-        rover = catalog.rover(rover) if isinstance(rover, str) else rover
-        scenario = catalog.scenario(scenario) if isinstance(scenario, str) else scenario
-        require(rover=(rover, Design), scenario=(scenario, Scenario), model=(model, Model))
-        super().__init__(rover, scenario, model)
+        self.error, self.intervals, self.binding, self._refresher = "", None, None, None
+        self._thread, self._stop, self._progress, self._status = None, threading.Event(), (0, 1), ""
+        self._heard, self._size, self._drawer, self._picture, self._shown = 0, (600, 380), ("", ""), "", ""
+        self._table, self._odds, self._band = [], (None, None), (None, None)
+        self._app = os.environ.get("SERVER_SOFTWARE", "").startswith("voila")
+        super().__init__(catalog.rover(rover) if isinstance(rover, str) else rover,
+                         catalog.scenario(scenario) if isinstance(scenario, str) else scenario, model)
         self._build()
         self._refresher = Refresher(self._refresh)
         self.set(view=view)
@@ -103,7 +100,7 @@ class Explorer(State):
     # ---- the page ---------------------------------------------------------------------------------------------
 
     def _build(self):
-        """The widgets: seven of HTML, and the box through which the page speaks."""
+        """The widgets: those of HTML, and the box through which the page speaks."""
         fixed = {"top": page.top(self._app), "left": page.left(self.menus), "views": page.views(self.menus)}
         self.parts = {name: W.HTML(fixed.get(name, "")) for name in
                       ("top", "drawer", "left", "verdict", "views", "picture", "side", "tray", "data")}
@@ -132,7 +129,7 @@ class Explorer(State):
                         getattr(self, "_on_" + kind)(*arguments)
                     except ValueError as error:
                         self._notice = ("alert", str(error))
-            self._refresher.poke()
+            self._poke()
 
     def _on_slide(self, name, position):
         if position != NUMBERS[name].position(self.state[name]):
@@ -153,45 +150,40 @@ class Explorer(State):
     def _on_do(self, action, *more):
         """A button: its name, and after a colon what it is about."""
         verb, _, about = action.partition(":")
-        if verb in ("undo", "redo", "pin"):
-            getattr(self, verb)()
-        elif verb == "reset":
-            self.reset(about or None)
-        elif verb == "unpin":
-            self.unpin(int(about))
-        elif verb == "use" and int(about) < len(self._pins):
-            self._change_design(self._pins[int(about)][1])
-        elif verb == "lever":
-            field = NUMBERS[about]
-            value, said = field.cut(float(f"{1.1 * self.state[about]:.6g}"))
-            self.set(**{about: value})
-            self._notice = ("status", said or f"{field.label} raised to {field.words(value)} {field.unit}")
-        elif verb == "point":
-            self.pick(int(about))
-        elif verb == "run":
-            self.optimise()
-        elif verb == "lightest":
-            self.lightest()
-        elif verb == "cancel":
-            self._stop.set()
-        elif verb == "load":
-            self.load(*more)
-        elif verb == "solve":
-            self.solve(self.state["solve_variable"])
-        elif verb == "save":
-            self._drawer = ("Saved", self._deliver(about))
-        elif verb == "python":
-            self._drawer = ("Python for " + self.state["script"], "<pre "
-                            f"tabindex='0'>{html.escape(self.python())}</pre>"
-                            + page.menu("script", "instead for", self.menus["script"]))
-        elif verb == "copied":
-            self._drawer = ("Copied: " + ("the address of this state" if self._app
-                                          else "the state, for Explorer(state=...)"),
-                            f"<pre tabindex='0'>{html.escape(self.link or '(as it starts)')}</pre>")
-        elif verb == "differences":
-            self._drawer = ("Differences", self._differences())
-        elif verb == "close":
-            self._drawer = ("", "")
+        do = {"undo": self.undo, "redo": self.redo, "pin": self.pin, "run": self.optimise, "lightest": self.lightest,
+              "cancel": self._stop.set, "reset": lambda: self.reset(about or None),
+              "unpin": lambda: self.unpin(int(about)), "point": lambda: self.pick(int(about)),
+              "use": lambda: [self._take(design) for _, design in self._pins[int(about):][:1]],
+              "lever": lambda: self._raise(about), "load": lambda: self.load(*more),
+              "solve": lambda: self.solve(self.state["solve_variable"])}
+        if verb in do:
+            do[verb]()
+        else:
+            self._drawer = self._read(verb, about)
+
+    def _raise(self, name):
+        """A lever: one input raised by a tenth."""
+        field = NUMBERS[name]
+        value, said = field.cut(float(f"{1.1 * self.state[name]:.6g}"))
+        self.set(**{name: value})
+        self._notice = ("status", said or f"{field.label} raised to {field.words(value)} {field.unit}")
+
+    def _read(self, verb, name):
+        """Title and HTML of what a button gives to read; "close" gives nothing."""
+        def shown(text, more=""):
+            return f"<pre tabindex='0'>{html.escape(text)}</pre>{more}"
+
+        if verb == "save":
+            data = base64.b64encode(self.file(name).encode()).decode()
+            return "Saved", (f'<p><a data-deliver download="{name}" href="data:application/octet-stream;base64,{data}">'
+                             f"{name}</a>: in the folder of your downloads.</p>")
+        if verb == "python":
+            return (f"Python for {self.state['script']}",
+                    shown(self.python(), page.menu("script", "instead for", self.menus["script"])))
+        if verb == "copied":
+            what = "the address of this state" if self._app else "the state, for Explorer(state=...)"
+            return f"Copied: {what}", shown(self.link or "(as it starts)")
+        return ("Differences", self._differences()) if verb == "differences" else ("", "")
 
     def _repr_mimebundle_(self, **kwargs):
         """The widgets; for readers without a kernel, the readings as text and the picture."""
@@ -218,109 +210,73 @@ class Explorer(State):
     def _refresh(self):
         """Compute the present state and show it; an error becomes a message, never a traceback in a thread."""
         with self._lock:
-            now, heard = dict(self.state), self._heard
-            design, scenario, model, before = self.design, self.scenario, self.model, self._before
-        see, view = self.parts, now["view"]
+            now, heard, pins, before = self.state, self._heard, list(self._pins), self._before
+            (design, scenario, model), reference = self._now, self._reference()
+        view = now["view"]
         if view in SLOW or view != self._shown:
             self._tell(heard, busy=True)
         try:
             result = evaluate(design, scenario, model=model)
-            binding = explain.binding(design, scenario, result, model=model)
-            self.result, self.binding, self.error = result, binding, ""
-            see["verdict"].value, self._table = answers.answer(design, scenario, result, binding, self.intervals,
-                                                               before, model, old=True)
-            see["side"].value = rover_picture(design, result, scenario, width=290)
-            self._show(now, design, scenario, model, result, None)
-            self._show_tray(scenario, model, result)
+            self.result, self.binding = result, explain.binding(design, scenario, result, model=model)
+            self.error = ""
+            ghosts = [(letter, cls, evaluate(other, scenario, model=model))
+                      for (letter, cls, _), (_, other) in zip(PINS, pins)]
+            answer = answers.Answer(now, design, scenario, model, result, self.binding, before, ghosts, reference,
+                                    self.intervals)
+            self.parts["verdict"].value, self._table = answers.answer(answer)
+            self.parts["side"].value = rover_picture(design, result, scenario, width=290)
+            self.parts["tray"].value = page.tray(answers.against(answer, pins), [colour for *_, colour in PINS])
+            self._show(answer)
             self._tell(heard, busy=self._refresher.overtaken)
             if not self._refresher.overtaken:            # intervals for the newest state alone
                 self.intervals = intervals(design, scenario, draws=answers.DRAWS, model=model)
+                answer = answer._replace(spans=self.intervals, sure=True)
                 if view in ("fleet", "mass") or view == "log" and self._size[0] >= WIDE:     # they show intervals
-                    self._show(now, design, scenario, model, result, self.intervals)
-                see["verdict"].value, self._table = answers.answer(design, scenario, result, binding, self.intervals,
-                                                                   before, model)
+                    self._show(answer)
+                self.parts["verdict"].value, self._table = answers.answer(answer)
+                if view == "sweep" and not now["sweep_second"]:
+                    self._band = answers.band_of(answer)
+                    self._show(answer)
+                self._rate(answer, heard)
         except Exception as error:                       # anything at all: the app must go on and say what happened
             self.error, self._picture = f"{type(error).__name__}: {error}", ""
-            see["picture"].value = f'<div role="alert">{html.escape(self.error)}</div>'
+            self.parts["picture"].value = f'<div role="alert">{html.escape(self.error)}</div>'
             self._tell(heard)
 
-    def _show(self, now, design, scenario, model, result, sure):
+    def _show(self, answer):
         """Draw the view, and beside it another where the page is wide."""
-        width, height = self._size
-        names = [now["view"]] + (["mass" if now["view"] == "log" else "log"] if width >= WIDE else [])
+        (width, height), view, scenario, model = self._size, answer.now["view"], answer.scenario, answer.model
+        if view == "optimise" and answer.now["live"] and (
+                self.front is None or self._recipe is not None or not answers.fits(self.front, scenario, model)):
+            self.front, self._recipe = live_front(scenario, self.front, model), None
+        names = [view] + (["mass" if view == "log" else "log"] if width >= WIDE else [])
+        answer = answer._replace(front=self.front, odds=self._odds, band=self._band)
         size = (width - 14 * (len(names) - 1)) // len(names), height
-        drawn = [self._draw(name, now, design, scenario, model, result, size, sure) for name in names]
-        self._picture, self._shown = drawn[0], now["view"]
+        drawn = [answers.PICTURES[name](answer, size) for name in names]
+        self._picture, self._shown = drawn[0], view
         self.parts["picture"].value = f'<div class="rdk-pictures">{"".join(drawn)}</div>'
 
-    def _ghosts(self, scenario, model):
-        return [(letter, cls, evaluate(design, scenario, model=model)) for (letter, cls, _),
-                (_, design) in zip(PINS, self._pins)]
-
-    def _draw(self, view, now, design, scenario, model, result, size, sure):
-        if view == "log":
-            ghosts = [(letter, cls, found.log) for letter, cls, found in self._ghosts(scenario, model)]
-            return pictures.log(result, scenario, model.soc_initial, size, ghosts)
-        if view == "mass":
-            return pictures.mass(result, size, sure and (sure.low["total_mass_kg"], sure.high["total_mass_kg"]),
-                                 self._ghosts(scenario, model))
-        if view == "wheel":
-            return pictures.wheel(result, design, scenario, model, size)
-        if view == "fleet":
-            names, designs = published()
-            others = evaluate(designs, scenario, model=model)
-            spans = sure and [(sure.low[n], sure.high[n]) for n in ("total_mass_kg", "range_km")]
-            return pictures.fleet(result, (others.total_mass_kg, others.range_km, names), size, spans,
-                                  self._ghosts(scenario, model))
-        if view == "why":
-            reference = self._start if now["baseline"] == START else self._rovers[now["baseline"]]
-            return answers.explained(design, reference, now["baseline"], scenario, model, now["why_metric"], size)
-        if view == "sweep":
-            fields = dict.fromkeys(filter(None, (now["sweep_first"], now["sweep_second"])))
-            return answers.swept(design, scenario, model, list(fields), now["sweep_metric"], size)
-        if now["live"] and (self.front is None or not self._fits(self.front, scenario, model)
-                            or self._recipe is not None):
-            self.front, self._recipe = live_front(scenario, self.front, model), None
-        if self.front is None:
-            return (f'<div style="padding:60px 20px;text-align:center;width:{size[0] - 60}px"><p>No front yet: designs '
-                    'that no other beats in every '
-                    'goal.</p><p style="margin:14px"><button type="button" class="rdk-btn rdk-main" data-do="run">Run '
-                    'search</button></p></div>')
-        return self._draw_front(now, scenario, model, result, size)
-
-    def _fits(self, front, scenario, model):
-        """Whether a front belongs to the mission and the model as they stand."""
-        return front.scenario.replace(name="") == plain(scenario).replace(name="") and front.model == model
-
-    def _draw_front(self, now, scenario, model, result, size):
-        front, names = self.front, [now["front_" + key] for key in ("x", "y", "colour")]
-        columns = [np.asarray(getattr(front.performance, name), float) for name in names]
-        where = front.scenario.name.replace("_", " ")
-        stale = "" if self._fits(front, scenario, model) else f"searched for {where} as it was: run again"
-        same = np.ones(len(front), bool)
-        for name in DESIGN_SPACE:
-            same &= np.asarray(getattr(front.designs, name)) == now[name]
-        picked = int(same.argmax()) if same.any() else None
-        faded = ~answers.meets(front.performance, scenario.problem.constraints)
-        words = f"{'Live front' if now['live'] else 'Front'} of {where}: {len(front)} designs"
-        return pictures.front(*columns, names, [float(getattr(result, name)) for name in names], size, picked, faded,
-                              words, stale or front.message, self._ghosts(scenario, model), front.designs)
-
-    def _show_tray(self, scenario, model, result):
-        pins = []
-        for (letter, _, other), (name, _) in zip(self._ghosts(scenario, model), self._pins):
-            parts = [(other.total_mass_kg - result.total_mass_kg, "kg"), (other.range_km - result.range_km, "km"),
-                     (other.slope_capability_deg - result.slope_capability_deg, "°")]
-            pins.append((letter, name, " · ".join(f"{round(v, 1) + 0.0:+.1f} {unit}".replace("-", "−")
-                                                  for v, unit in parts)))
-        self.parts["tray"].value = page.tray(pins, [colour for *_, colour in PINS])
+    def _rate(self, answer, heard):
+        """The odds of the front's designs where they are its colour, some at a time; news come first."""
+        front, demands = self.front, answers.asked(answer.scenario.problem.constraints)
+        if answer.now["view"] != "optimise" or answer.now["front_colour"] != ODDS or not front:
+            return
+        if self._odds[0] != (front, demands):
+            self._odds = (front, demands), np.full(len(front), np.nan)
+        odds = self._odds[1]
+        while np.isnan(odds).any() and not self._refresher.overtaken:
+            some = np.flatnonzero(np.isnan(odds))[:RATED]
+            found = intervals(front.designs[some], front.scenario, draws=answers.DRAWS, model=front.model)
+            odds[some] = found.share(demands)
+            self._status = f"odds of {np.isfinite(odds).sum()} of {len(front)} designs, by {answers.DRAWS:,} draws each"
+            self._show(answer)
+            self._tell(heard, busy=self._refresher.overtaken)
 
     def _differences(self):
         """Table of the pinned designs beside the present one, on the present mission."""
         designs = [self.design, *(design for _, design in self._pins)]
         found = [evaluate(design, self.scenario, model=self.model) for design in designs]
-        rows = [(pictures.label(name)[0], *(answers.words(float(getattr(p, name)), digits, pictures.label(name)[1])
-                                            for p in found))
+        rows = [(label(name)[0], *(answers.words(float(getattr(p, name)), digits, label(name)[1]) for p in found))
                 for name, digits in answers.ROWS]
         rows += [(f.label, *(f"{f.words(getattr(d, name))} {f.unit}" for d in designs)) for name, f in DESIGN.items()
                  if len({getattr(d, name) for d in designs}) > 1]
@@ -329,53 +285,93 @@ class Explorer(State):
     def _tell(self, heard, busy=False):
         """Send the values of all inputs and the small texts to the page; `heard` is the last event that is answered."""
         with self._lock:
-            now, link = self.state, self.link
-            numbers = {name: (f.position(now[name]), f.words(now[name]),
-                              100 * f.position(self._base.get(name, now[name])) / f.positions,
-                              int(name in self._base and now[name] != self._base[name])) for name, f in NUMBERS.items()}
-            m, (done, of) = self.scenario, self._progress if self._thread else (0, 1)
+            now, base, m, link, running = self.state, self._values(*self._base), self.scenario, self.link, self._thread
+            numbers = {}
+            for name, f in NUMBERS.items():
+                first = base.get(name, now[name])
+                numbers[name] = (f.position(now[name]), f.words(now[name]), 100 * f.position(first) / f.positions,
+                                 int(now[name] != first))
             route = "no limit" if math.isinf(m.traverse_limit_km) else f"{m.traverse_limit_km:g} km"
-            mission = f"Mission: {place(m.latitude_deg)}, {m.slope_deg:g}°"
-            texts = {"mission": mission, "status": self._status, "share": link,
-                     "summary": f"{place(m.latitude_deg)}, {m.duration_earth_days:g} "
-                     f"days from {m.start_utc or 'sunrise'}, {m.slope_deg:g}° in {m.soil.name}; drives "
-                     f"{100 * m.duty_cycle:g} % of the time, route {route}."}
-            chosen = {name: str(now[name]) for name in (*self.menus, "start_utc")}
-            off = {"undo": not self._past, "redo": not self._future, "run": bool(self._thread),
-                   "lightest": bool(self._thread), "cancel": not self._thread}
-            told = {"ack": heard, "v": numbers, "c": chosen, "t": texts, "off": off,
-                    "p": (done, of, bool(self._thread)), "link": link, "share": link, "busy": busy}
-            (role, notice), (head, body) = self._notice, self._drawer
-        said = f'<div role="{role}">{html.escape(notice)}</div>' if notice else ""
-        self.parts["drawer"].value = (f"<div>{said}</div>" if said else "") + page.drawer(head, body)
+            texts = {"mission": f"Mission: {place(m.latitude_deg)}, {m.slope_deg:g}°", "status": self._status,
+                     "share": link, "summary": f"{place(m.latitude_deg)}, {m.duration_earth_days:g} days from "
+                     f"{m.start_utc or 'sunrise'}, {m.slope_deg:g}° in {m.soil.name}; drives {100 * m.duty_cycle:g} % "
+                     f"of the time, route {route}."}
+            told = {"ack": heard, "v": numbers, "c": {name: str(now[name]) for name in (*self.menus, "start_utc")},
+                    "t": texts, "off": {"undo": not self._past, "redo": not self._future, "run": bool(running),
+                                        "lightest": bool(running), "cancel": not running},
+                    "p": (*self._progress, bool(running)), "link": link, "share": link, "busy": busy}
+            (role, notice), drawer = self._notice, self._drawer
+        said = f'<div><div role="{role}">{html.escape(notice)}</div></div>' if notice else ""
+        self.parts["drawer"].value = said + page.drawer(*drawer)
         self.parts["data"].value = f'<div data-state="{html.escape(json.dumps(told), quote=True)}"></div>'
 
     # ---- fronts and solutions ---------------------------------------------------------------------------------
 
     def _problem(self):
         """What `pareto_front` needs for the search that the inputs pose."""
-        posed = self._posed()
-        return {"population": self.state["population"], "generations": self.state["generations"],
-                "seed": self.state["seed"], "objectives": dict(posed.objectives),
-                "constraints": list(posed.constraints)}
+        posed = self.scenario.problem
+        return {name: self.state[name] for name in ("population", "generations", "seed")} | {
+            "objectives": dict(posed.objectives), "constraints": list(posed.constraints)}
 
     def optimise(self, wait=False):
         """Search in the background for the mission as it stands; with `wait`, return when the search has ended."""
-        self._begin(self._search, (plain(self.scenario), self.model, self._problem()), wait)
+        (_, scenario, model), problem = self._now, self._problem()
+
+        def take(front):
+            self.front = front
+            self._recipe = {**problem, "generations": len(front.objective_history)}      # fewer where it was cancelled
+            return front.message or f"done: {len(front)} designs after {problem['generations']} generations"
+
+        self._begin(take, "generation {} of {}", wait, pareto_front, plain(scenario), model=model, warn=False,
+                    **problem)
 
     def lightest(self, wait=False):
         """Put the lightest rover that meets the demands on the sliders; found in the background by `rdk.size`."""
-        wanted = [("feasible", ">=", 1), *self._posed().constraints]
-        self._begin(self._size_up, (plain(self.scenario), self.model, wanted), wait)
+        def take(found):
+            held = ", ".join(label(name.split(" ")[0])[0] for name in found.binding) or "nothing"
+            said = found.message or (f"lightest: {found.performance.total_mass_kg:.2f} kg, held by {held}; all demands "
+                                     f"hold in {100 * found.odds:.0f} % of draws")
+            self._take(found.design)
+            self._notice = ("alert" if found.message else "status", said)
+            return said
 
-    def _begin(self, work, arguments, wait):
-        """Start a search, unless one is under way."""
+        _, scenario, model = self._now
+        self._begin(take, "looking for the lightest rover", wait, size, plain(scenario),
+                    answers.asked(scenario.problem.constraints), model=model)
+
+    def _begin(self, take, words, wait, search, *given, **options):
+        """Start a search in a thread of its own, unless one is under way; `take` uses what it found, and says so."""
+        drawn = time.monotonic()
+
+        def follow(progress):
+            nonlocal drawn
+            self._progress = progress[:2]
+            self._status = words.format(*self._progress)
+            if time.monotonic() - drawn > 0.4:
+                if search is pareto_front:
+                    self.front, self._recipe = progress.front(), None
+                self._poke()
+                drawn = time.monotonic()
+            return self._stop.is_set() or not threading.main_thread().is_alive()     # or the program is ending
+
+        def work():
+            try:
+                found = search(*given, on_generation=follow, **options)
+                with self._lock:
+                    self._status = take(found)
+            except Exception as error:
+                self._status = f"the search failed: {error}"
+                self._notice = ("alert", self._status)
+            with self._lock:
+                self._thread = None
+                self._poke()
+
         with self._lock:
             if self._thread is None:
-                self.state["live"] = False
+                self._chosen["live"] = False
                 self._stop.clear()
                 self._progress, self._status = (0, 1), "starting"
-                self._thread = threading.Thread(target=work, args=arguments)
+                self._thread = threading.Thread(target=work)
                 self._thread.start()
             thread = self._thread
         self._poke()
@@ -383,63 +379,13 @@ class Explorer(State):
             thread.join()
             self.settle()
 
-    def _ended(self):
-        """Whether a search must stop: it was cancelled, or the program is ending."""
-        return self._stop.is_set() or not threading.main_thread().is_alive()
-
-    def _size_up(self, scenario, model, wanted):
-        """The thread of `lightest`."""
-        def follow(progress):
-            self._progress, self._status = (progress.generation, progress.generations), "looking for the lightest rover"
-            if progress.generation % 20 == 1:
-                self._poke()
-            return self._ended()
-
-        try:
-            found = size(scenario, wanted, model=model, on_generation=follow)
-            held = ", ".join(label(name.split(" ")[0])[0] for name in found.binding) or "nothing"
-            said = found.message or (f"lightest: {found.performance.total_mass_kg:.2f} kg, held by {held}; all demands "
-                                     f"hold in {100 * found.odds:.0f} % of draws")
-        except Exception as error:
-            found, said = None, f"the search failed: {error}"
-        with self._lock:
-            if found is not None:
-                self._change_design(found.design)
-            self._thread, self._status = None, said
-            self._notice = ("alert" if found is None or found.message else "status", said)
-            self._poke()
-
-    def _search(self, scenario, model, problem):
-        """The search's thread: progress, a growing front, cancel."""
-        drawn = time.monotonic()
-
-        def follow(progress):
-            nonlocal drawn
-            self._progress = progress.generation, problem["generations"]
-            self._status = "generation {} of {}".format(*self._progress)
-            if time.monotonic() - drawn > 0.4:
-                self.front, self._recipe = progress.front(), None
-                self._refresher.poke()
-                drawn = time.monotonic()
-            return self._ended()
-
-        try:
-            front = pareto_front(scenario, model=model, on_generation=follow, warn=False, **problem)
-            done = front.message or f"done: {len(front)} designs after {problem['generations']} generations"
-            recipe = {**problem, "generations": len(front.objective_history)}    # fewer where it was cancelled
-        except Exception as error:
-            front, recipe, done = None, None, f"the search failed: {error}"
-        with self._lock:
-            self.front, self._recipe, self._thread, self._status = front, recipe, None, done
-            self._refresher.poke()
-
     def solve(self, name):
         """Move one design variable to the nearest value that meets the demands; a notice says what came of it."""
-        value, said = answers.solved(self.design, self.scenario, self.model, check_variable(name))
+        value, said = answers.solved(*self._now, check("solve_variable", name, self.menus))
         if value is not None:
             self.set(**{name: value})
         self._notice = ("alert" if value is None else "status", said)
-        self._refresher.poke()
+        self._poke()
 
 
 def live_front(scenario, start=None, model=Model()):

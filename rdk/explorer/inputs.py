@@ -105,7 +105,7 @@ METRICS = ("range_km", "total_mass_kg", "slope_capability_deg", "energy_balance_
            "obstacle_capability_m")
 VIEWS = {"log": "Mission log", "mass": "Mass", "wheel": "Wheel", "fleet": "Fleet", "why": "Why", "sweep": "Sweep",
          "optimise": "Optimise"}
-OWN, START, NONE = "your own", "the design at the start", "none"
+OWN, START, NONE, ODDS = "your own", "the design at the start", "none", "odds"
 SKY = "site", "site_height_m", "start_utc"
 SCRIPTS = ("the readings", "why", "the sweep", "the front")
 RESTORED = (*DESIGN, "wheel_count", *COEFFICIENTS, "preset", *MISSION, *SKY, *SOIL, *DEMANDS, *GOALS)
@@ -141,7 +141,8 @@ def choices():
             "preset": {"paper": "as in the paper", "engineering": "engineering"}, "view": VIEWS,
             "baseline": same(START, *catalog.rover_names()), "why_metric": metrics,
             "sweep_first": swept, "sweep_second": {"": "nothing else"} | swept, "sweep_metric": metrics,
-            "front_x": metrics, "front_y": metrics, "front_colour": metrics, "live": {False: "off", True: "on"},
+            "front_x": metrics, "front_y": metrics, "front_colour": metrics | {ODDS: label(ODDS)[0]},
+            "live": {False: "off", True: "on"},
             "solve_variable": {name: field.label for name, field in DESIGN.items()},
             **dict.fromkeys(GOALS, same("max", "min", "ignore")), "script": same(*SCRIPTS)}
 

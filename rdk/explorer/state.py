@@ -1,7 +1,7 @@
-"""The explorer's state: a rover, a mission and a model in plain numbers and words; its past, pins, link and files."""
+"""The explorer's state: a rover, a mission, a model and what else is chosen; its past, pins, link and files."""
 from __future__ import annotations
 
-import base64
+import contextlib
 import dataclasses
 import functools
 import math
@@ -11,18 +11,23 @@ from urllib.parse import urlencode
 import numpy as np
 
 from .. import catalog, explain
-from ..design import DESIGN_SPACE, Design, Model, Problem, Scenario
+from ..design import DESIGN_SPACE, Model, Problem
 from ..mission import evaluate
 from ..report import report
-from ..terramechanics import Soil
+from ..sampling import replaced, single
 from ..tradespace import Front
 from . import answers
-from .inputs import (COEFFICIENTS, DEMANDS, DESIGN, GOALS, MISSION, NONE, NUMBERS, OWN, RESTORED, SKY, SOIL, START,
-                     check, choices, from_text, title)
+from .inputs import (COEFFICIENTS, DEMANDS, DESIGN, GOALS, MISSION, NONE, NUMBERS, OWN, SKY, SOIL, START, check,
+                     choices, from_text, title)
 
 PINS = ("A", "c1", "#c04a00"), ("B", "c2", "#007a59"), ("C", "c3", "#6a7488")
 PAST = 200                                               # states that undo remembers
 FIRST = "rover", "mission", "preset", "site"             # of a link: the values come after the names
+CHOSEN = {"view": "log", "baseline": "MoonRanger", "why_metric": "range_km", "sweep_first": "wheel_radius_m",
+          "sweep_second": "", "sweep_metric": "range_km", "front_x": "total_mass_kg", "front_y": "slope_capability_deg",
+          "front_colour": "range_km", "live": False, "solve_variable": "wheel_radius_m", "script": "the readings",
+          "population": 50, "generations": 60, "seed": 13, "site_height_m": 2}
+ENGINEERING = Model.engineering()
 skyline = functools.cache(catalog.skyline)
 
 
@@ -30,75 +35,80 @@ class State:
     """What the inputs of an explorer show, and everything that changes it; `_poke` asks for a new answer."""
 
     def __init__(self, design, mission, model):
-        for name, record, kind in ("rover", design, Design), ("scenario", mission, Scenario), ("model", model, Model):
-            if not isinstance(record, kind):
-                raise TypeError(f"{name} must be a {kind.__name__} or, for rover and scenario, a name; got "
-                                f"{type(record).__name__}")
-            if record.shape:
-                raise ValueError(f"{name} must be a single one; got arrays of shape {record.shape}")
+        single(rover=design, scenario=mission, model=model)
         self.menus, self.front, self.result = choices(), None, None
-        self._model, self._recipe, self._before = model, None, None
+        self._recipe = self._before = None
         self._lock = threading.RLock()
         self._past, self._future, self._drag, self._pins = [], [], ("", 0), []
         self._notice = ("", "")
         self._catalogue = {name: catalog.scenario(name) for name in catalog.scenario_names()}
         self._soils = {name: catalog.soil(name) for name in catalog.soil_names()}
         self._rovers = {name: catalog.rover(name) for name in catalog.rover_names()}
-        self.state = {
-            "rover": OWN, "mission": OWN, "soil": OWN, "preset": "paper", "view": "log", "baseline": "MoonRanger",
-            "why_metric": "range_km", "sweep_first": "wheel_radius_m", "sweep_second": "", "sweep_metric": "range_km",
-            "front_x": "total_mass_kg", "front_y": "slope_capability_deg", "front_colour": "range_km", "live": False,
-            "solve_variable": "wheel_radius_m", "script": "the readings", "population": 50, "generations": 60,
-            "seed": 13, **{name: getattr(model, name) for name in COEFFICIENTS}}
+        self._chosen = dict(CHOSEN)
+        self._now = self._base = design, mission, model  # the rover and mission last chosen are the base
         self._put(design, mission)
-        self._start, self._base = self.design, self._snapshot()
-        self._past.clear()
+        self._start = self.design
 
     def _poke(self):
         """Ask for an answer to the state as it is now."""
 
-    @property
-    def design(self):
-        """The Design that the inputs show."""
-        return Design(**{name: self.state[name] for name in DESIGN_SPACE})
+    design = property(lambda self: self._now[0], doc="The Design that the inputs show.")
+    scenario = property(lambda self: self._now[1], doc="The Scenario that the inputs show, with its demands and goals.")
+    model = property(lambda self: self._now[2], doc="The Model that the inputs show.")
+    state = property(lambda self: self._chosen | self._values(*self._now), doc="Every input, as `set` takes them.")
 
-    @property
-    def soil(self):
-        """The Soil that the inputs show."""
-        values = {name: self.state[name] for name in SOIL}
-        known = (soil for soil in (self._guest.soil, *self._soils.values()) if all(getattr(soil, n) == v for n,
-                                                                                   v in values.items()))
-        return next(known, Soil(name=OWN, **values))
+    def _values(self, design, mission, model):
+        """Rover, mission and model as the inputs show them."""
+        limits = {(metric, sign): limit for metric, sign, limit in mission.problem.constraints}
+        site, height = self._site(mission)
+        coefficients = {name: getattr(model, name) for name in COEFFICIENTS}
+        return {**{name: getattr(design, name) for name in (*DESIGN, "wheel_count")}, **coefficients,
+                **{name: getattr(mission, name) for name in MISSION},
+                **{name: getattr(mission.soil, name) for name in SOIL},
+                **{name: limits.get((metric, sign), 0 if sign == ">=" else math.inf)
+                   for name, (metric, sign, _) in DEMANDS.items()},
+                **{goal: mission.problem.objectives.get(metric, "ignore") for goal, metric in GOALS.items()},
+                "survive": int(limits.get(("thermal_survival", ">="), 0)),
+                "rover": next((name for name, known in self._rovers.items() if known == design), OWN),
+                "mission": mission.name if self._catalogue.get(mission.name) == mission else OWN,
+                "soil": mission.soil.name if self._soils.get(mission.soil.name) == mission.soil else OWN,
+                "preset": "engineering" if vars(model) == vars(ENGINEERING) | coefficients else "paper",
+                "site": site, "start_utc": mission.start_utc or NONE, **({"site_height_m": height} if height else {})}
 
-    @property
-    def scenario(self):
-        """The Scenario that the inputs show; its problem holds the demands and goals."""
-        site, start = catalog.skyline_sites().get(self.state["site"]), self.state["start_utc"]
-        sky = {} if self.state["site"] == OWN else {"skyline": None} if site is None else {
-            "skyline": skyline(self.state["site"], self.state["site_height_m"]), "longitude_deg": site["longitude_deg"]}
-        mission = dataclasses.replace(self._guest, name=OWN, soil=self.soil, problem=self._posed(), **sky,
-                                      start_utc=None if start == NONE else start,
-                                      **{name: self.state[name] for name in MISSION})
-        names = dict.fromkeys((self._guest.name, *self._catalogue))
-        known = (dataclasses.replace(mission, name=name) for name in names)
-        return next((m for m in known if m == self._catalogue.get(m.name, self._guest)), mission)
-
-    @property
-    def model(self):
-        """The Model that the inputs show."""
-        return dataclasses.replace(self._model, **{name: self.state[name] for name in COEFFICIENTS})
+    def _site(self, mission):
+        """Name and height of the site whose skyline a mission has."""
+        if mission.skyline is None:
+            return NONE, None
+        site, height = explain.site_of(mission.skyline) or (OWN, None)
+        return (site, height) if mission.longitude_deg == mission.skyline.longitude_deg else (OWN, None)
 
     @property
     def link(self):
         """The state as a short text: the query of the app's address, and what `Explorer(state=...)` takes."""
-        rover, mission = self.state["rover"], self.state["mission"]
-        base = self._values(self._rovers.get(rover, self._start),
-                            self._catalogue.get(mission, self._catalogue["equatorial_mare_traverse"]))
-        base |= {"rover": "", "mission": "", "view": "log", "preset": "paper", **{name: getattr(Model(), name)
-                                                                                  for name in COEFFICIENTS}}
-        if rover == OWN:
-            base |= dict.fromkeys(DESIGN, None) | {"wheel_count": None}
-        return urlencode({name: self.state[name] for name in base if self.state[name] != base[name]})
+        now = self.state
+        mission = self._catalogue.get(now["mission"], self._catalogue["equatorial_mare_traverse"])
+        base = self._values(self._rovers.get(now["rover"], self._start), mission, Model()) | {
+            "rover": "", "mission": "", "view": "log", "population": 50, "generations": 60,
+            "seed": mission.problem.seed or CHOSEN["seed"], "soil": now["soil"]}
+        own = (*DESIGN, "wheel_count") * (now["rover"] == OWN) + (
+            *MISSION, *SKY, *SOIL, *DEMANDS, *GOALS, "seed") * (now["mission"] == OWN)
+        base |= dict.fromkeys(own)                       # what has no name is carried whole
+        return urlencode({name: now[name] for name in base if now[name] != base[name]})
+
+    @contextlib.contextmanager
+    def _step(self, drag=("", 0)):
+        """A change: undo goes behind it. A slider's moves that follow within 1.5 s of each other are one change."""
+        with self._lock:
+            before = self._now
+            yield
+            if self._now != before:
+                if not (drag[0] and drag[0] == self._drag[0] and drag[1] - self._drag[1] < 1500 and self._past):
+                    self._past.append(before)
+                    self._before = self.result
+                    del self._past[:-PAST]
+                self._drag = drag
+                self._future.clear()
+            self._poke()
 
     def set(self, **values):
         """Set inputs by name, such as `slope_deg=20`, `soil="fjs-1"`, `view="why"` or `population=30`.
@@ -112,14 +122,9 @@ class State:
 
     def _move(self, values, drag=("", 0)):
         checked = {name: check(name, value, self.menus) for name, value in values.items()}
-        with self._lock:
-            moved = [name for name, value in checked.items() if self.state[name] != value]
-            if any(name in RESTORED or name in ("rover", "mission", "soil") for name in moved):
-                self._remember(drag)
+        with self._step(drag):
             for name, value in checked.items():
                 self._assign(name, value)
-            self._name()
-        self._poke()
 
     def undo(self):
         """Back to the state before the last change of rover, mission or model."""
@@ -129,250 +134,203 @@ class State:
         """Forward again after `undo`."""
         self._travel(self._future, self._past)
 
+    def _travel(self, source, target):
+        with self._lock:
+            if source:
+                target.append(self._now)
+                self._now, self._before, self._drag = source.pop(), self.result, ("", 0)
+            self._poke()
+
     def reset(self, name=None):
         """Back to the rover and mission last chosen, or one input of them."""
-        with self._lock:
-            self._remember()
-            self._restore(self._base if name is None else {**self._snapshot(), name: self._base[name]})
-        self._poke()
+        with self._step():
+            if name is None:
+                self._now = self._base
+            else:
+                self._assign(name, self._values(*self._base)[name])
 
     def pin(self):
         """Keep the present design for comparison, at most three."""
-        with self._lock:
+        with self._step():
+            now, base = self.state, self._values(*self._base)
             if len(self._pins) < len(PINS):
-                moved = [f"{NUMBERS[n].label} {NUMBERS[n].words(self.state[n])}" for n in DESIGN
-                         if self.state[n] != self._base[n]]
-                name = self.state["rover"]
+                moved = [f"{NUMBERS[n].label} {NUMBERS[n].words(now[n])}" for n in DESIGN if now[n] != base[n]]
+                name = now["rover"]
                 self._pins.append((name if name != OWN else ", ".join(moved[:2]) or OWN, self.design))
-        self._poke()
 
     def unpin(self, index):
         """Forget a pinned design."""
-        with self._lock:
-            if 0 <= index < len(self._pins):
-                del self._pins[index]
-        self._poke()
+        with self._step():
+            del self._pins[index:index + 1]
 
     def pick(self, index):
         """Put a design of the front on the sliders."""
         if self.front is None or not 0 <= index < len(self.front):
             raise ValueError(f"there is no point {index} of a front to pick")
-        with self._lock:
-            self._change_design(self.front.designs[index])
+        self._take(self.front.designs[index])
 
-    def _values(self, design=None, mission=None):
-        """A design's and a mission's values as the state holds them."""
-        found = {} if design is None else {name: getattr(design, name) for name in DESIGN_SPACE}
-        if mission is not None:
-            limits = {(metric, sign): limit for metric, sign, limit in mission.problem.constraints}
-            found |= {name: getattr(mission, name) for name in MISSION} | {name: getattr(mission.soil, name)
-                                                                           for name in SOIL}
-            found |= dict(zip(SKY, (*self._site(mission), mission.start_utc or NONE)))
-            found |= {name: limits.get((metric, sign), 0 if sign == ">=" else math.inf) for name,
-                      (metric, sign, _) in DEMANDS.items()}
-            found |= {goal: mission.problem.objectives.get(metric, "ignore") for goal, metric in GOALS.items()}
-        return found
-
-    def _site(self, mission):
-        """Name and height of the site whose skyline a mission has."""
-        if mission.skyline is None:
-            return NONE, 2
-        site, height = explain.site_of(mission.skyline) or (OWN, 2)
-        return (site if site == OWN or mission.longitude_deg == mission.skyline.longitude_deg else OWN), height
-
-    def _posed(self):
-        """The problem that demands and goals pose; demands on what has no slider stay."""
-        base, mine = self._guest.problem, {(metric, sign): self.state[name] for name,
-                                           (metric, sign, _) in DEMANDS.items()}
-        if all(self.state[n] == v for n, v in self._values(None, self._guest).items() if n in DEMANDS or n in GOALS):
-            return base
-        others = tuple(c for c in base.constraints if c[:2] not in mine)
-        return dataclasses.replace(
-            base, objectives={m: self.state[g] for g, m in GOALS.items() if self.state[g] != "ignore"},
-            constraints=tuple((*key, limit) for key, limit in mine.items() if limit not in (0, math.inf)) + others)
+    def _take(self, design):
+        """Take a design as one change; the base stays."""
+        with self._step():
+            base = self._base
+            self._put(design)
+            self._base = base
 
     def _assign(self, name, value):
         """One input's new value, and what follows from it."""
-        if name == "rover" and value != OWN:
+        design, mission, model = self._now
+        problem, sites, here = mission.problem, catalog.skyline_sites(), self._site(mission)[0]
+        if name in self._chosen:
+            self._chosen[name] = value
+        if value == OWN or name in CHOSEN and (name != "site_height_m" or here not in sites):
+            return
+        if name == "rover":
             self._put(self._rovers[value])
-        elif name == "mission" and value != OWN:
+        elif name == "mission":
             self._put(mission=self._catalogue[value])
-        elif name == "soil" and value != OWN:
-            self.state |= {n: getattr(self._soils[value], n) for n in SOIL}
-        elif name == "site" and value in (sites := catalog.skyline_sites()):
-            self._assign("latitude_deg", sites[value]["latitude_deg"])
-            self.state["site"] = value
         elif name == "preset":
-            self._model = Model() if value == "paper" else Model.engineering()
-            self.state |= {n: getattr(self._model, n) for n in COEFFICIENTS} | {"preset": value}
+            self._now = design, mission, Model() if value == "paper" else ENGINEERING
+        elif name in DEMANDS:
+            kept = {(metric, sign): limit for metric, sign, limit in problem.constraints} | {DEMANDS[name][:2]: value}
+            names = dict.fromkeys([*(demand[:2] for demand in DEMANDS.values()), *kept])     # always in one order
+            kept = tuple((*key, kept[key]) for key in names if kept.get(key, 0) not in (0, math.inf))
+            self._show_mission(problem=problem.replace(constraints=kept))
+        elif name in GOALS:
+            kept = problem.objectives | {GOALS[name]: value}
+            names = dict.fromkeys([*GOALS.values(), *kept])
+            kept = {metric: kept[metric] for metric in names if kept.get(metric, "ignore") != "ignore"}
+            self._show_mission(problem=problem.replace(objectives=kept))
+        elif name == "soil":
+            self._show_mission(soil=self._soils[value])
+        elif name == "start_utc":
+            self._show_mission(start_utc=None if value == NONE else value)
+        elif name in SKY and (value if name == "site" else here) == NONE:
+            self._show_mission(skyline=None)
+        elif name in SKY:
+            site = value if name == "site" else here
+            self._show_mission(skyline=None)
+            self._assign("latitude_deg", sites[site]["latitude_deg"])
+            self._show_mission(skyline=skyline(site, self._chosen["site_height_m"]),
+                               longitude_deg=sites[site]["longitude_deg"])
         else:
-            noon = 0.0 if self.state["latitude_deg"] < 0 else 180.0
-            if name == "latitude_deg" and self.state["panel_azimuth_deg"] == noon:
-                self.state["panel_azimuth_deg"] = 0.0 if value < 0 else 180.0        # the array follows the noon sun
-            site = catalog.skyline_sites().get(self.state["site"])
-            if name == "latitude_deg" and site is not None and value != site["latitude_deg"]:
+            noon = 0.0 if mission.latitude_deg < 0 else 180.0
+            if name == "latitude_deg" and mission.panel_azimuth_deg == noon:
+                mission = mission.replace(panel_azimuth_deg=0.0 if value < 0 else 180.0)     # follows the noon sun
+            if name == "latitude_deg" and here in sites and value != mission.latitude_deg:
                 self._notice = ("status", "site set to none: its skyline holds at its own latitude only")
-                self.state["site"] = NONE
-            self.state[name] = value
+                mission = mission.replace(skyline=None)
+            self._now = replaced(design, mission, model, {name: value})
+            self._show_mission()
 
-    def _name(self):
-        """The menus name what the values are."""
-        design, mission = self.design, self.scenario
-        self.state["rover"] = next((name for name, known in self._rovers.items() if known == design), OWN)
-        self.state["mission"] = mission.name if mission.name in self._catalogue else OWN
-        if self.state["site"] == OWN and self._guest.skyline is None:
-            self.state["site"] = NONE
-        self.state["soil"] = next((name for name, known in self._soils.items() if known == mission.soil), OWN)
+    def _show_mission(self, **changes):
+        """Change the mission; it and its soil have the names of those known that they equal."""
+        design, mission, model = self._now
+        mission = mission.replace(**changes)
+        soil = mission.soil.replace(name=OWN)
+        mission = mission.replace(name=OWN, soil=self._named.get(soil, soil))
+        self._now = design, self._named.get(mission, mission), model
 
     def _put(self, design=None, mission=None, note=""):
-        """Show a design, a mission or both; the notice says what the sliders could not take."""
-        said = [note] if note else []
-        with self._lock:
-            if mission is not None:
-                self._guest = mission
-                self.state["seed"] = self.state["seed"] if mission.problem.seed is None else mission.problem.seed
-            for name, value in self._values(design, mission).items():
-                near, word = NUMBERS[name].cut(value) if name in NUMBERS else (value, "")
-                self.state[name] = near
-                said += [word] * bool(word)
-            self._name()
-            self._base = {**getattr(self, "_base", {}), **self._snapshot(DESIGN_SPACE if mission is None else None
-                                                                         if design is not None
-                                                                        else set(RESTORED) - set(DESIGN_SPACE))}
-            self._notice = ("status", "; ".join(said))
-        self._poke()
-
-    def _snapshot(self, names=None):
-        """What undo brings back."""
-        return {name: self.state[name] for name in RESTORED if names is None
-                or name in names} | {"": (self._guest, self._model)}
-
-    def _restore(self, kept):
-        self._guest, self._model = kept[""]
-        self.state |= {name: value for name, value in kept.items() if name}
-        self._name()
-
-    def _remember(self, drag=("", 0)):
-        """Keep the state before a change; a slider's moves that follow within 1.5 s of each other count as one."""
-        if not (drag[0] and drag[0] == self._drag[0] and drag[1] - self._drag[1] < 1500 and self._past):
-            self._past.append(self._snapshot())
-            self._before = self.result
-            del self._past[:-PAST]
-        self._drag = drag
-        self._future.clear()
-
-    def _travel(self, source, target):
-        with self._lock:
-            if source:
-                target.append(self._snapshot())
-                self._before, self._drag = self.result, ("", 0)
-                self._restore(source.pop())
+        """Show a design, a mission or both, and make them the base; the notice says what the sliders could not take."""
+        said, names = [note] if note else [], (*DESIGN,) if design else ()
+        if mission is not None:
+            names += (*MISSION, *SOIL, *DEMANDS)
+            self._named = {known.replace(name=OWN): known for known in (
+                *self._soils.values(), *self._catalogue.values(), mission.soil, mission)}
+            self._chosen["seed"] = self._chosen["seed"] if mission.problem.seed is None else mission.problem.seed
+        self._now = design or self.design, mission or self.scenario, self.model
+        values = self._values(*self._now)
+        for name in names:
+            near, word = NUMBERS[name].cut(values[name]) if name in NUMBERS else (None, "")
+            if word:
+                self._assign(name, near)
+                said.append(word)
+        self._base = self.design if design else self._base[0], *(self._now if mission else self._base)[1:]
+        self._notice = ("status", "; ".join(said))
         self._poke()
 
     def _restore_link(self, text):
         """Lay the state of a link over the present one; what is wrong in it is said, the rest taken."""
-        wrong = []
-        with self._lock:
-            self._remember()
-            found = from_text(text)
+        wrong, found = [], from_text(text)
+        with self._step():
             for name in sorted(found, key=lambda n: FIRST.index(n) if n in FIRST else len(FIRST)):
                 if name in NUMBERS or name in self.menus or name in SKY:
                     try:
                         self._assign(name, check(name, found[name], self.menus))
                     except ValueError as error:
                         wrong.append(str(error))
-            self._name()
             self._notice = ("alert" if wrong else "status", "; ".join(wrong))
-        self._poke()
-
-    def _change_design(self, design):
-        """Take a design, as one step of undo; the baseline stays."""
-        self._remember()
-        said = []
-        for name, value in self._values(design).items():
-            self.state[name], word = NUMBERS[name].cut(value) if name in NUMBERS else (value, "")
-            said += [word] * bool(word)
-        self._name()
-        self._notice = ("status", "; ".join(said))
-        self._poke()
 
     # ---- files ------------------------------------------------------------------------------------------------
 
+    def _own_front(self):
+        """The front, where it belongs to the mission and the model as they stand."""
+        front = self.front
+        return front if front is not None and answers.fits(front, self.scenario, self.model) else None
+
     def file(self, name):
         """The text of a file: design.json, design.csv, front.json, front.csv, picture.svg or report.html."""
-        design, scenario = self.design, self.scenario
-        if name.startswith("front") and (self.front is None or not len(self.front)):
+        design, scenario, front = self.design, self.scenario, self.front
+        if name.startswith("front") and not front:
             raise ValueError("there is no front yet: run a search first")
-        if name == "report.html":
-            others = {f"{letter} {title}": d for (letter, *_), (title, d) in zip(PINS, self._pins)}
-            front = self.front if self.front is not None and self._fits(self.front, scenario, self.model) else None
-            return report(design, scenario, f"{self.state['rover'] if self.state['rover'] != OWN else 'A rover'} for "
-                          f"{title(scenario.name)}",
-                          model=self.model, front=front, candidates=others)
+        rover = self.state["rover"]
         made = {"design.json": lambda: catalog.to_json(design, scenario),
                 "design.csv": lambda: catalog.to_csv(design, self.result),
-                "front.json": lambda: catalog.to_json(self.front.designs, self.front.scenario),
-                "front.csv": lambda: catalog.to_csv(self.front.designs, self.front.performance),
-                "picture.svg": lambda: self._picture}
+                "front.json": lambda: catalog.to_json(front.designs, front.scenario),
+                "front.csv": lambda: catalog.to_csv(front.designs, front.performance),
+                "picture.svg": lambda: self._picture,
+                "report.html": lambda: report(
+                    design, scenario, f"{'A rover' if rover == OWN else rover} for {title(scenario.name)}",
+                    model=self.model, front=self._own_front(),
+                    candidates={f"{letter} {name}": other for (letter, *_), (name, other) in zip(PINS, self._pins)})}
         if name not in made:
-            raise ValueError(f"no file {name!r}; choose from {', '.join(made)}, report.html")
+            raise ValueError(f"no file {name!r}; choose from {', '.join(made)}")
         return made[name]()
-
-    def _deliver(self, name):
-        data = base64.b64encode(self.file(name).encode()).decode()
-        return (f'<p><a data-deliver download="{name}" href="data:application/octet-stream;base64,{data}">{name}</a>: '
-                "in the folder of your downloads.</p>")
 
     def load(self, name, content):
         """Show a design, or a front, from a file's name and its text or bytes; a notice says what was wrong with it."""
         try:
             text = content if isinstance(content, str) else bytes(content).decode("utf-8-sig")
-            text = text.removeprefix("\ufeff")
-            design, mission = (catalog.from_csv(text),
-                               None) if name.lower().endswith(".csv") else catalog.from_json(text)
+            text, table = text.removeprefix("\ufeff"), name.lower().endswith(".csv")
+            design, mission = (catalog.from_csv(text), None) if table else catalog.from_json(text)
         except ValueError as error:                      # also where the bytes are no text
             self._notice = ("alert", f"{name} was not loaded: {error}")
             self._poke()
             return
         note = f"{name} loaded"
-        self._remember()
-        if design.shape:
-            note += f": {len(design)} designs, shown under Optimise; the first is on the sliders"
-            where = plain(self.scenario if mission is None else mission)
-            design = Design(**{n: np.clip(getattr(design, n), v.low, v.high) for n, v in DESIGN_SPACE.items()})
-            self.front, self._recipe = Front(design, evaluate(design, where, model=self.model), where, self.model,
-                                             Problem()), None
-            design = design[0]
-        self._put(design, mission, note)
+        with self._step():
+            if design.shape:
+                note += f": {len(design)} designs, shown under Optimise; the first is on the sliders"
+                where = plain(mission or self.scenario)
+                design = design.replace(**{n: np.clip(getattr(design, n), v.low, v.high)
+                                           for n, v in DESIGN_SPACE.items()})
+                self.front, self._recipe = Front(design, evaluate(design, where, model=self.model), where, self.model,
+                                                 Problem()), None
+                design = design[0]
+            self._put(design, mission, note)
+
+    def _reference(self):
+        """The design that "why" compares with."""
+        return self._start if self._chosen["baseline"] == START else self._rovers[self._chosen["baseline"]]
 
     def python(self):
         """The Python that reproduces what the menu `script` names, as it stands on the screen."""
-        design, scenario, model, wanted = self.design, self.scenario, self.model, self.state["script"]
+        wanted, more, (design, scenario, model) = self._chosen["script"], {}, self._now
+        calls = ["result = rdk.evaluate(design, mission, model=model)",
+                 f"intervals = rdk.intervals(design, mission, draws={answers.DRAWS}, model=model)"]
         if wanted == "the front":
             if self.front is None or self._recipe is None:
                 return "# No front of a finished search: choose the view Optimise and press Run search.\n"
             recipe = ", ".join(f"{name}={value!r}" for name, value in self._recipe.items())
-            return explain.as_python(design, self.front.scenario, self.front.model,
-                                     f"front = rdk.pareto_front(mission, {recipe}, model=model)")
-        if wanted == "why":
-            reference = self._start if self.state["baseline"] == START else self._rovers[self.state["baseline"]]
-            return explain.as_python(design, scenario, model, "why = rdk.attribution(design, baseline, mission, "
-                                     "model=model)", baseline=reference)
-        if wanted == "the sweep":
-            fields = dict.fromkeys(filter(None, (self.state["sweep_first"], self.state["sweep_second"])))
-            over = {name: answers.span_of(name, answers.MAP if len(fields) == 2 else answers.CURVE).tolist()
-                    for name in fields}
-            return explain.as_python(design, scenario, model, f"curve = rdk.sweep(design, mission, {over!r}, "
-                                     "model=model)")
-        return explain.as_python(design, scenario, model, "result = rdk.evaluate(design, mission, model=model)",
-                                 f"intervals = rdk.intervals(design, mission, draws={answers.DRAWS}, model=model)")
-
-
-def check_variable(name):
-    """The name of a design variable with a slider, or a ValueError."""
-    if name not in DESIGN:
-        raise ValueError(f"no design variable {name!r} to solve for; choose from {', '.join(DESIGN)}")
-    return name
+            scenario, model = self.front.scenario, self.front.model
+            calls = [f"front = rdk.pareto_front(mission, {recipe}, model=model)"]
+        elif wanted == "why":
+            more = {"baseline": self._reference()}
+            calls = ["why = rdk.attribution(design, baseline, mission, model=model)"]
+        elif wanted == "the sweep":
+            over = {name: values.tolist() for name, values in answers.swept_over(self._chosen).items()}
+            calls = [f"curve = rdk.sweep(design, mission, {over!r}, model=model)"]
+        return explain.as_python(design, scenario, model, *calls, **more)
 
 
 def plain(scenario):
