@@ -27,9 +27,11 @@ result) of pinned designs, the `reference` of "why"; `spans` are intervals, olde
 `band` are pairs whose first part says what they are of."""
 
 
-def words(value, digits, unit=""):
+def words(value, digits, unit="", sign=""):
     """A number for people."""
-    return "none" if np.isnan(value) else f"{value:.{digits}f} {unit}".rstrip().replace("-", "−")
+    if np.isnan(value):
+        return "none"
+    return f"{round(float(value), digits) + 0.0:{sign}.{digits}f} {unit}".rstrip().replace("-", "−")     # no minus 0
 
 
 def asked(constraints):
@@ -80,9 +82,9 @@ def cards(a):
         if span and name == "slope_capability_deg" and 0 < spans.low["stalled"] < 1:
             note += f"; {100 * spans.low['stalled']:.0f} % of draws stall"
         change = value - float(getattr(a.before or result, name))
-        moved = f"{change:+.{digits}f}" if np.isfinite(change) and abs(change) >= 0.5 * 10.0**-digits else ""
-        drawn.append(card(title, words(value, digits), label(name)[1], status, note, moved.replace("-", "−"), value,
-                          span, need, not a.sure))
+        moved = words(change, digits, sign="+") if np.isfinite(change) and round(change, digits) else ""
+        drawn.append(card(title, words(value, digits), label(name)[1], status, note, moved, value, span, need,
+                          not a.sure))
     return f'<div class="rdk-cards">{"".join(drawn)}</div>'
 
 
@@ -124,7 +126,7 @@ def answer(a):
 def against(a, pins):
     """The pinned designs for the tray: letter, name, what each has more or less than the present one."""
     return [(letter, name, " · ".join(
-        f"{round(getattr(other, metric) - getattr(a.result, metric), 1) + 0.0:+.1f} {label(metric)[1]}".replace("-", "−")
+        words(getattr(other, metric) - getattr(a.result, metric), 1, label(metric)[1], "+")
         for metric in ("total_mass_kg", "range_km", "slope_capability_deg")))
         for (letter, _, other), (name, _) in zip(a.ghosts, pins)]
 
