@@ -21,7 +21,8 @@ STYLE = """
 .rdk-svg .h{paint-order:stroke;stroke:var(--rdk-card,#fff);stroke-width:3px;stroke-linejoin:round}
 .rdk-svg .o{stroke:currentColor;stroke-width:1.6;fill:var(--rdk-part,#e6ebf2)}
 .rdk-svg .soil{fill:var(--rdk-soil,#e4e0da)}.rdk-svg .bad{stroke:var(--rdk-red,#b42318);stroke-width:2.6}
-.rdk-svg text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}:root.rdk-svg{background:#fff}"""
+.rdk-svg text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}
+:root.rdk-svg{background:#fff}""".replace("\n", "")
 """Styles of every SVG of the collection; a page may set the variables, as the explorer does for dark themes.
 
 A picture that stands alone, such as a notebook's output, knows nothing of its page and brings a white ground."""
@@ -32,7 +33,7 @@ def element(tag, cls, inside="", **attributes):
     """An SVG element of a class; `inside` stands as it is, _ in the name of an attribute is -."""
     words = "".join([f' {name.replace("_", "-")}="{value:.5g}"' if isinstance(value, float)
                      else f' {name.replace("_", "-")}="{value}"' for name, value in attributes.items()])
-    return f'<{tag} class="{cls}"{words}>{inside}</{tag}>'
+    return f'<{tag} class="{cls}"{words}>{inside}</{tag}>' if cls else f"<{tag}{words}>{inside}</{tag}>"
 
 
 def text(x, y, words, cls=""):
