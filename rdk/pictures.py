@@ -359,6 +359,7 @@ def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, si
     if band is not None:
         axes.area(*band, opacity=0.07 if old else 0.18)
     axes.line(values, nominal)
+    axes.taken += zip(axes.x(values) - 1, axes.y(nominal) - 1, axes.x(values) + 1, axes.y(nominal) + 1)
     points = [] if rovers is None else [(x, float(np.clip(y, *axes.ys)), name) for x, y, name in zip(*rovers)
                                         if values[0] <= x <= values[-1] and np.isfinite(y)]
     for x, y, _ in points:

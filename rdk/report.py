@@ -128,7 +128,7 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
     front : Front, optional
         Shown with the design on it; without one, the published rovers are shown.
     baseline : Design, optional
-        Whose difference in the metric `why` is attributed to the variables; by default the published rover that is
+        Whose difference in the metric `why` is attributed to the variables; by default another rover, published and
         nearest in mass.
     bounds : dict of str to (float, float), optional
         Limits of design variables in place of those in DESIGN_SPACE.
@@ -149,8 +149,8 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
     names, fleet = published()
     rovers = evaluate(fleet, scenario, model=model)
     if baseline is None:
-        nearest = int(np.abs(np.log(rovers.total_mass_kg / result.total_mass_kg)).argmin())
-        baseline, baseline_name = fleet[nearest], names[nearest]
+        order = np.abs(np.log(rovers.total_mass_kg / result.total_mass_kg)).argsort()
+        baseline, baseline_name = next((fleet[i], names[i]) for i in order.tolist() if fleet[i] != design)
     shares = attribution(design, baseline, scenario, model=model)
     if why not in shares.contributions:
         raise ValueError(f"why: no metric {why!r}; choose from {', '.join(shares.contributions)}")
