@@ -83,7 +83,7 @@ class Explorer(State):
         super().__init__(catalog.rover(rover) if isinstance(rover, str) else rover,
                          catalog.scenario(scenario) if isinstance(scenario, str) else scenario, model)
         self._build()
-        self._refresher = Refresher(self._refresh)
+        self._refresher = Refresher(self._refresh, self._lock)
         self.set(view=view)
         if text := state or (os.environ.get("QUERY_STRING", "") if self._app else ""):
             self._restore_link(text)

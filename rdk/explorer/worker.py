@@ -5,10 +5,13 @@ import threading
 
 
 class Refresher:
-    """Runs `work` in a thread when poked; pokes during a run, from any thread, lead to one more; keeps its `error`."""
+    """Runs `work` in a thread when poked; pokes during a run, from any thread, lead to one more; keeps its `error`.
 
-    def __init__(self, work):
-        self._work, self._state, self.error = work, threading.Condition(), None
+    Pokes by one that holds `lock` are one.
+    """
+
+    def __init__(self, work, lock=None):
+        self._work, self._state, self._lock, self.error = work, threading.Condition(), lock or threading.Lock(), None
         self._wanted = self._done = self._target = 0
 
     def poke(self):
@@ -26,7 +29,8 @@ class Refresher:
     def _loop(self):
         more = True
         while more:
-            self._target, self.error = self._wanted, None
+            with self._lock:
+                self._target, self.error = self._wanted, None
             try:
                 self._work()
             except Exception as error:                   # whatever it is, the next poke must find a worker
