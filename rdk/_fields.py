@@ -193,6 +193,12 @@ def limits_of(cls):
     return {f.name: dict(f.metadata) for f in dataclasses.fields(cls) if "minimum" in f.metadata}
 
 
+def _lanes(record, name, index):
+    """Lanes of a field that is computed when it is first read."""
+    value = np.broadcast_to(getattr(record, name), record.shape)[index]
+    return value if np.ndim(value) else value.item()
+
+
 @functools.cache
 def _names(cls):
     return tuple(f.name for f in dataclasses.fields(cls))
@@ -310,7 +316,8 @@ class Record(Shown):
             return value
 
         def pick_record(record):
-            changed = {name: pick(getattr(record, name)) for name in _names(type(record)) if name not in record.apart}
+            changed = {name: functools.partial(_lanes, record, name, index) if callable(vars(record).get(name))
+                       else pick(getattr(record, name)) for name in _names(type(record)) if name not in record.apart}
             return dataclasses.replace(record, **changed)
 
         return pick_record(self)

@@ -703,3 +703,13 @@ def test_to_frame_has_one_row_a_design():
     assert len(rdk.evaluate(RASHID, MARE).to_frame()) == 1
     log = rdk.evaluate(RASHID, MARE).log.to_frame()
     assert len(log) == 336 and "stored_wh" in log.columns
+
+
+def test_a_lane_of_a_population_computes_no_field_that_nobody_reads(monkeypatch):
+    marched, march = [], rdk.mission.traverse
+    monkeypatch.setattr(rdk.mission, "traverse", lambda *given, **more: marched.append(more) or march(*given, **more))
+    many = rdk.evaluate(rdk.random_designs(5, seed=2), rdk.scenario("mare_micro").replace(traverse_limit_km=0.2))
+    lanes = [many[3], many[1:4][2], many[[0, 3]][-1]]
+    assert len(marched) == 1
+    assert [lane.arrival_h for lane in lanes] == [many.arrival_h[3]] * 3 and np.isfinite(many.arrival_h).any()
+    assert len(marched) == 2 and isinstance(lanes[0].tip_over_deg, float)
