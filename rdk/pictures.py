@@ -163,6 +163,14 @@ class Axes:
         self.taken.append(free)
         self.say(free[0], free[3] - 2, words, cls + " h")
 
+    def spots(self, *points):
+        """Marks, then names that cover none of them: (x, y, name, its class, and what `sign` takes)."""
+        for x, y, _, _, *look in points:
+            self.mark(x, y, *look)
+        for x, y, name, cls, *_ in points:
+            if name:
+                self.name(x, y, name, cls)
+
     def legend(self, *entries):
         """What the marks mean, above on the right: (words, kind, class, and more of `sign`)."""
         x = self.box[2]
@@ -295,26 +303,21 @@ def fleet(result, rovers, size=SIZE, spans=None, ghosts=()):
     """Range against mass: this design, with its intervals, among published rovers on the same mission."""
     masses, ranges, names = (np.asarray(v) for v in rovers)
     order = {}
-    for m, r, n in zip(masses.round(6).tolist(), ranges.round(6).tolist(), names.tolist()):
-        order.setdefault((m, r), []).append(n)           # rovers at one place share a name
+    for *at, name in zip(masses.round(6).tolist(), ranges.round(6).tolist(), names.tolist()):
+        order.setdefault(tuple(at), []).append(name)     # rovers at one place share a name
     here = result.total_mass_kg, result.range_km
     (x0, x1), (y0, y1) = spans or ((value, value) for value in here)
-    others = [(name, cls, (other.total_mass_kg, other.range_km)) for name, cls, other in ghosts]
-    across = [*masses, x0, x1, here[0], *(at[0] for *_, at in others)]
-    up = span(ranges, [y0, y1, here[1], *(at[1] for *_, at in others)], zero=True, room=0.1)
+    others = [(other.total_mass_kg, other.range_km, name, "s b f" + cls[1], "dot", "l " + cls, 6)
+              for name, cls, other in ghosts]
+    across = [*masses, x0, x1, here[0], *(at[0] for at in others)]
+    up = span(ranges, [y0, y1, here[1], *(at[1] for at in others)], zero=True, room=0.1)
     axes = Axes(size, (0.8 * min(across), 1.3 * max(across)), up, 50, log=True)
     axes.frame("Range", "km", "mass (kg), logarithmic")
-    axes.add("path", "l c0 t", d=f"M{axes.x(x0):.1f} {axes.y(here[1]):.1f}H{axes.x(x1):.1f}M{axes.x(here[0]):.1f} "
-                                 f"{axes.y(y0):.1f}V{axes.y(y1):.1f}")
-    for m, r in order:
-        axes.mark(m, r, "square", "f1", 4)
-    for _, cls, at in others:
-        axes.mark(*at, cls="l " + cls, size=6)
-    axes.mark(*here, size=6)
-    for name, cls, at in others:
-        axes.name(*at, name, "s b f" + cls[1])
-    for at, found in order.items():
-        axes.name(*at, ", ".join(found))
+    x, y, left, right, low, high = axes.x(here[0]), axes.y(here[1]), *map(axes.x, (x0, x1)), *map(axes.y, (y0, y1))
+    axes.add("path", "l c0 t", d=f"M{left:.1f} {y:.1f}H{right:.1f}M{x:.1f} {low:.1f}V{high:.1f}")
+    axes.taken += [(left, y - 1, right, y + 1), (x - 1, high, x + 1, low)]
+    axes.spots(*((*at, ", ".join(found), "s", "square", "f1", 4) for at, found in order.items()), *others,
+               (*here, "", "", "dot", "f0", 6))
     axes.legend(("this design", "dot", "f0"), ("published rovers", "square", "f1", {"size": 4}))
     rest = ", ".join(f"{n} {r:.1f} km" for n, r in zip(names, ranges))
     return axes.picture(f"Range against mass: this design reaches {result.range_km:.2f} km with "
@@ -360,14 +363,10 @@ def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, si
         axes.area(*band, opacity=0.07 if old else 0.18)
     axes.line(values, nominal)
     axes.taken += zip(axes.x(values) - 1, axes.y(nominal) - 1, axes.x(values) + 1, axes.y(nominal) + 1)
-    points = [] if rovers is None else [(x, float(np.clip(y, *axes.ys)), name) for x, y, name in zip(*rovers)
-                                        if values[0] <= x <= values[-1] and np.isfinite(y)]
-    for x, y, _ in points:
-        axes.mark(x, y, "square", "f1", 3.5)
-    if np.isfinite(here[1]):
-        axes.mark(*here, cls="f3", size=6)
-    for point in points:
-        axes.name(*point)
+    points = [] if rovers is None else [
+        (x, float(np.clip(y, *axes.ys)), name, "s", "square", "f1", 3.5) for x, y, name in zip(*rovers)
+        if values[0] <= x <= values[-1] and np.isfinite(y)]
+    axes.spots(*points, *([(*here, "", "", "dot", "f3", 6)] if np.isfinite(here[1]) else []))
     stalls = [("cannot drive", "square", "", HATCHED)] if np.any(stalled) else []
     axes.legend(("this design", "dot", "f3"), ("90 % of draws", "square", "f0", {"opacity": 0.3}), *stalls)
     return axes.picture(f"{named(metric)} against {x_label}: from {nominal[0]:.3g} at {values[0]:.3g} to "
@@ -420,8 +419,9 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
     """
     if not len(x):
         return message(size, f"{title}: an empty front, no design meets the constraints.")
-    others = [(name, cls, [float(getattr(other, field)) for field in names[:2]]) for name, cls, other in ghosts]
-    axes = Axes(size, *(span(values, here[i], [at[i] for *_, at in others]) for i, values in enumerate((x, y))),
+    others = [(*(float(getattr(other, field)) for field in names[:2]), name, "s b f" + cls[1], "dot", "l " + cls, 8)
+              for name, cls, other in ghosts]
+    axes = Axes(size, *(span(values, here[i], [at[i] for at in others]) for i, values in enumerate((x, y))),
                 top=62 if stale else 44, right=86)
     axes.frame(*label(names[1]), named(names[0]), count=5)
     low, high = (0.0, 1.0) if names[2] == "odds" else span(colour, room=0)
@@ -433,15 +433,10 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
                 if value == value]
         axes.mark(x[i], y[i], cls="rdk-pick", size=6, inside=f"<title>{', '.join(said)}</title>",
                   fill=shade((colour[i] - low) / (high - low)) if colour[i] == colour[i] else "transparent",
-                  stroke="currentColor",
-                  stroke_width=2.6 if i == picked else 0.7, opacity=0.25 if faded is not None and faded[i] else 1,
-                  tabindex=0 if i == (picked or 0) else -1, role="button", data_do=f"point:{i}",
+                  stroke="currentColor", stroke_width=2.6 if i == picked else 0.7, role="button", data_do=f"point:{i}",
+                  opacity=0.25 if faded is not None and faded[i] else 1, tabindex=0 if i == (picked or 0) else -1,
                   aria_label=", ".join(said[:3]))
-    for name, cls, at in others:
-        axes.mark(*at, cls="l " + cls, size=8)
-        axes.name(*at, name, "s b f" + cls[1])
-    axes.mark(*here[:2], "cross", "l c1", 6)
-    axes.name(*here[:2], "this design", "s b")
+    axes.spots(*others, (*here[:2], "this design", "s b", "cross", "l c1", 6))
     axes.scale(low, high, label(names[2])[0])
     axes.parts = [element("g", "", "".join(axes.parts), opacity=0.45 if stale else 1), text(8, 30, stale, "bad s"),
                   text(8, 14, title, "b" if 7.5 * len(title) < size[0] else "s b")]
