@@ -11,15 +11,10 @@ from ..mission import evaluate
 from ..report import published
 from ..sampling import attribution, holds, replaced, sweep, uncertain_inputs
 from ..uncertainty import DRAWS
-from .inputs import NUMBERS, ODDS, label
-from .page import card, details, verdict
+from .inputs import METRICS, NUMBERS, ODDS, label
+from .page import card, verdict
 
 BAND_DRAWS, CURVE, MAP = 256, 61, 25                     # of the readings' draws the first; points of a sweep
-ROWS = (("range_km", 2), ("total_mass_kg", 2), ("slope_capability_deg", 1), ("energy_balance_pct", 0),
-        ("cold_temperature_c", 0), ("hot_temperature_c", 0), ("wheel_torque_nm", 2), ("slip", 2), ("sinkage_m", 4),
-        ("cruise_speed_m_s", 3), ("obstacle_capability_m", 3), ("minimum_soc", 2), ("average_solar_power_w", 1))
-
-
 Answer = namedtuple("Answer", "now design scenario model result binding before ghosts reference spans sure front odds "
                     "band", defaults=(False, None, (None, None), (None, None)))
 """What the page shows of one state: inputs `now`, the result `before` the last change, `ghosts` as (letter, class,
@@ -93,7 +88,7 @@ def readings(a):
     needed = {limit.metric: ("✓ met: " if limit.met else "✗ missed: ") + limit.words
               for limit in explain.limits(a.design, a.scenario, a.result, model=a.model)}
     rows = []
-    for name, digits in ROWS:
+    for name, digits in METRICS.items():
         span = "" if a.spans is None else " to ".join(words(end[name], digits) for end in (a.spans.low, a.spans.high))
         rows.append((label(name)[0], words(float(getattr(a.result, name)), digits, label(name)[1]), span,
                      needed.get(name, "")))
@@ -119,8 +114,7 @@ def answer(a):
     if buttons:
         head = head.split(":")[0] + ". Try" if a.binding.key not in ("soil", "traction") else "Try"
     status = "missed" if not met else "risk" if "! at risk" in shown else "met"
-    return (verdict(status, sentence, head, buttons, odds) + shown
-            + details(("reading", "value", "90 % interval", "needed"), table)), table
+    return verdict(status, sentence, head, buttons, odds, shown, table), table
 
 
 def against(a, pins):

@@ -25,7 +25,7 @@ from ..sampling import intervals
 from ..sizing import size
 from ..tradespace import pareto_front
 from . import answers, page
-from .inputs import DESIGN, NUMBERS, ODDS, check, label, place
+from .inputs import DESIGN, METRICS, NUMBERS, ODDS, check, label, place
 from .state import PINS, State, plain
 from .worker import Refresher
 
@@ -277,7 +277,7 @@ class Explorer(State):
         designs = [self.design, *(design for _, design in self._pins)]
         found = [evaluate(design, self.scenario, model=self.model) for design in designs]
         rows = [(label(name)[0], *(answers.words(float(getattr(p, name)), digits, label(name)[1]) for p in found))
-                for name, digits in answers.ROWS]
+                for name, digits in METRICS.items()]
         rows += [(f.label, *(f"{f.words(getattr(d, name))} {f.unit}" for d in designs)) for name, f in DESIGN.items()
                  if len({getattr(d, name) for d in designs}) > 1]
         return page.table(("", "now", *(f"{letter} {name}" for (letter, *_), (name, _) in zip(PINS, self._pins))), rows)

@@ -100,9 +100,9 @@ DEMANDS = {name: (metric, sign, NUMBERS.get(name)) for name, metric, sign in (
     ("maximum_mass_kg", "total_mass_kg", "<="), ("minimum_charge", "minimum_soc", ">="),
     ("survive", "thermal_survival", ">="))}
 GOALS = {"range_goal": "range_km", "mass_goal": "total_mass_kg", "slope_goal": "slope_capability_deg"}
-METRICS = ("range_km", "total_mass_kg", "slope_capability_deg", "energy_balance_pct", "cruise_speed_m_s", "slip",
-           "sinkage_m", "wheel_torque_nm", "minimum_soc", "average_solar_power_w", "cold_temperature_c",
-           "obstacle_capability_m")
+METRICS = {"range_km": 2, "total_mass_kg": 2, "slope_capability_deg": 1, "energy_balance_pct": 0,
+           "cold_temperature_c": 0, "hot_temperature_c": 0, "wheel_torque_nm": 2, "slip": 2, "sinkage_m": 4,
+           "cruise_speed_m_s": 3, "obstacle_capability_m": 3, "minimum_soc": 2, "average_solar_power_w": 1}    # digits
 VIEWS = {"log": "Mission log", "mass": "Mass", "wheel": "Wheel", "fleet": "Fleet", "why": "Why", "sweep": "Sweep",
          "optimise": "Optimise"}
 OWN, START, NONE, ODDS = "your own", "the design at the start", "none", "odds"

@@ -54,13 +54,8 @@ def row(name):
 
 
 def group(heading):
-    """The rows under a heading of the table of inputs."""
-    return "".join(row(name) for name, field in NUMBERS.items() if field.heading == heading)
-
-
-def headed(*headings):
-    """Groups in sight, each below its heading."""
-    return "".join(f"<h3>{heading}</h3>{group(heading)}" for heading in headings)
+    """The rows under a heading of the table of inputs; the heading of a group that is folded away is not shown."""
+    return f"<h3>{heading}</h3>" + "".join(row(name) for name, f in NUMBERS.items() if f.heading == heading)
 
 
 def more(heading, before=""):
@@ -90,12 +85,12 @@ def left(menus):
         2026-11-26T12:00 brings the real sun; “none” the paper's, which rises at the start.</p>"""
     return f"""<nav role="tablist" aria-label="inputs"><button role="tab" data-tab="rover">Rover</button>
         <button role="tab" data-tab="mission"><span data-text="mission"></span></button></nav>
-        <section data-page="rover" aria-label="rover">{menu("rover", "", menus["rover"])}{headed("Wheels")}
-        {segments("wheel_count", menus["wheel_count"], "wheels")}{headed("Body", "Power")}
+        <section data-page="rover" aria-label="rover">{menu("rover", "", menus["rover"])}{group("Wheels")}
+        {segments("wheel_count", menus["wheel_count"], "wheels")}{group("Body")}{group("Power")}
         {more("coefficients of the model", menu("preset", "Model", menus["preset"]))}</section>
         <section data-page="mission" aria-label="mission" hidden>{menu("mission", "", menus["mission"])}
-        <p class="rdk-say" data-text="summary"></p>{headed("Site")}{menu("soil", "soil", menus["soil"])}
-        {headed("Work", "Demands")}{segments("survive", menus["survive"], "survival of heat and cold")}
+        <p class="rdk-say" data-text="summary"></p>{group("Site")}{menu("soil", "soil", menus["soil"])}
+        {group("Work")}{group("Demands")}{segments("survive", menus["survive"], "survival of heat and cold")}
         {more("array, speed limit")}
         {more("site and date", menu("site", "site", menus["site"])
               + menu("site_height_m", "array", menus["site_height_m"]) + when)}
@@ -124,12 +119,14 @@ def views(menus):
         f'<div class="rdk-controls" data-for="{name}" hidden>{panel}</div>' for name, panel in panels.items())
 
 
-def verdict(status, sentence, why, levers, odds):
-    """The answer in words; levers are (action, words)."""
+def verdict(status, sentence, why, levers, odds, cards, readings):
+    """The answer in words, its cards, and all readings folded away; levers are (action, words)."""
     tries = "".join(button(action, escape(words)) for action, words in levers)
     return f"""<section class="rdk-say1 rdk-{status}" aria-label="answer"><div role="status">
         <b>{STATUS[status][0]} {escape(sentence)}</b> <span class="rdk-say">{escape(odds)}</span></div>
-        <div class="l">{escape(why)} {tries}</div></section>"""
+        <div class="l">{escape(why)} {tries}</div></section>{cards}
+        <details class="rdk-more"><summary>all readings</summary><div class="rdk-over" tabindex="0">
+        {table(("reading", "value", "90 % interval", "needed"), readings)}</div></details>"""
 
 
 def card(title, value, unit, status, note, change="", at=math.nan, interval=None, need=None, old=False):
@@ -160,12 +157,6 @@ def table(header, rows):
     body = "".join(f'<tr><th scope="row">{escape(first)}</th>' + "".join(f"<td>{escape(cell)}</td>" for cell in rest)
                    + "</tr>" for first, *rest in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-
-
-def details(header, rows):
-    """All readings, folded away."""
-    return f"""<details class="rdk-more"><summary>all readings</summary>
-        <div class="rdk-over" tabindex="0">{table(header, rows)}</div></details>"""
 
 
 def tray(pins, colours):
