@@ -433,9 +433,9 @@ def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="
                 if value == value]
         axes.mark(x[i], y[i], cls="rdk-pick", size=6, inside=f"<title>{', '.join(said)}</title>",
                   fill=shade((colour[i] - low) / (high - low)) if colour[i] == colour[i] else "transparent",
-                  stroke="currentColor", stroke_width=2.6 if i == picked else 0.7, role="button", data_do=f"point:{i}",
+                  stroke="currentColor", stroke_width=2.6 if i == picked else 0.7,
                   opacity=0.25 if faded is not None and faded[i] else 1, tabindex=0 if i == (picked or 0) else -1,
-                  aria_label=", ".join(said[:3]))
+                  role="button", data_do=f"point:{i}", aria_label=", ".join(said[:3]))
     axes.spots(*others, (*here[:2], "this design", "s b", "cross", "l c1", 6))
     axes.scale(low, high, label(names[2])[0])
     axes.parts = [element("g", "", "".join(axes.parts), opacity=0.45 if stale else 1), text(8, 30, stale, "bad s"),
