@@ -48,8 +48,7 @@ def handout(folder):
         nbformat.write(notebook, folder / path.name)
     for part in "drawings", "exercises":
         shutil.copytree(NOTEBOOKS / part, folder / part, ignore=shutil.ignore_patterns("__pycache__", *OURS))
-    for pattern in ("chance.py", "ledger.py", "registry.py", "sensitivity.py", "wheel_coverage.py", "glossary.md",
-                    "departures.md", "app.ipynb", "*.png"):
+    for pattern in ("*.py", "*.md", "app.ipynb", "*.png"):
         for path in NOTEBOOKS.glob(pattern):
             shutil.copy(path, folder)
     guide = (NOTEBOOKS / "README.md").read_text(encoding="utf-8").partition("## For instructors")[0]
