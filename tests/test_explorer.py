@@ -173,7 +173,8 @@ def test_positions_and_values_of_sliders_agree():
     ("wheel_radius_m", "300", 0.2, "radius 300 cut to 200 mm"), ("wheel_radius_m", "9", 0.05, "radius 9 cut to 50 mm"),
     ("battery_capacity_wh", "62,5", 62.5, ""), ("grouser_count", "3,7", 4, "grousers 3,7 rounded to 4"),
     ("duration_earth_days", "365", 60, "duration 365 cut to 60 days"), ("latitude_deg", "−85", -85, ""),
-    ("traverse_limit_km", "none", math.inf, ""), ("duty_cycle", "12,5", 0.125, "")])
+    ("traverse_limit_km", "none", math.inf, ""), ("traverse_limit_km", "500", 500, ""),
+    ("duty_cycle", "12,5", 0.125, "")])
 def test_typed_numbers_are_understood_and_what_is_done_to_them_is_said(explorer, name, text, value, said):
     events(explorer, ["type", name, text])
     assert explorer.state[name] == pytest.approx(value, rel=1e-12)
@@ -193,12 +194,12 @@ def test_a_typed_text_that_is_no_number_is_refused_in_words(explorer, text):
 
 @pytest.mark.parametrize("values, words", [
     ({"wheel": 1}, "no input 'wheel'"), ({"slope_dag": 1}, "nearest are slope_deg"),
-    ({"slope_deg": 36}, "slope_deg must be a number from 0 to 35; got 36"),
-    ({"slope_deg": np.nan}, "slope_deg must be a number from 0 to 35; got nan"),
-    ({"slope_deg": "5"}, "slope_deg must be a number from 0 to 35; got '5'"),
-    ({"grouser_count": 2.5}, "grouser_count must be a whole number from 0 to 24; got 2.5"),
+    ({"slope_deg": 36}, "slope_deg must be at least 0 and at most 35 and finite; got 36"),
+    ({"slope_deg": np.nan}, "slope_deg must be at least 0 and at most 35 and finite; got nan"),
+    ({"slope_deg": "5"}, "slope_deg must be at least 0 and at most 35 and finite; got '5'"),
+    ({"grouser_count": 2.5}, "grouser_count must be a whole number, at least 0 and at most 24; got 2.5"),
     ({"soil": "mud"}, "soil must be one of fjs-1, "), ({"wheel_count": 5}, "wheel_count must be one of 4, 6"),
-    ({"view": "x"}, "view must be one of log, "), ({"traverse_limit_km": -1}, "from 0 to 200, or infinity; got -1")])
+    ({"view": "x"}, "view must be one of log, "), ({"traverse_limit_km": -1}, "km must be zero or more; got -1")])
 def test_set_names_what_is_wrong_and_what_is_allowed(explorer, values, words):
     before = dict(explorer.state)
     with pytest.raises(ValueError, match=re.escape(words)):

@@ -9,8 +9,7 @@ from urllib.parse import parse_qsl
 
 import numpy as np
 
-from .. import catalog, pictures
-from .._fields import unknown
+from .. import _fields, catalog, pictures
 from ..design import DESIGN_SPACE
 from ..sky import julian_date
 
@@ -83,7 +82,7 @@ class Field(NamedTuple):
 
     def cut(self, value, text=None):
         """The value within the slider's span, whole where it must be, and a sentence if that changed it."""
-        near = min(max(value, self.low), math.inf if self.endless and math.isinf(value) else self.high)
+        near = min(max(value, self.low), math.inf if self.endless else self.high)
         near = round(near) if self.whole else near
         text = self.words(value) if text is None else text
         done = "rounded" if self.low <= value <= self.high else "cut"
@@ -166,14 +165,10 @@ def check(name, value, menus):
         julian_date(text)                                # raises where it is no date
         return text
     if name not in NUMBERS:
-        raise unknown("no input", name, [*NUMBERS, *menus, "start_utc"])
+        raise _fields.unknown("no input", name, [*NUMBERS, *menus, "start_utc"])
     field = NUMBERS[name]
-    good = isinstance(value, (int, float, np.number)) and not isinstance(value, bool) and (
-        field.low <= value <= field.high or field.endless and value == math.inf)
-    if not good or field.whole and value != int(value):
-        raise ValueError(f"{name} must be a {'whole ' * field.whole}number from {field.low:g} to {field.high:g}"
-                         f"{', or infinity' * field.endless}; got {value!r}")
-    return int(value) if field.whole else float(value)
+    return _fields.check(name, value, field.low, math.inf if field.endless else field.high, whole=field.whole,
+                         infinite=field.endless, scalar=True)
 
 
 def from_text(text):
