@@ -41,8 +41,8 @@ def meets(performance, constraints):
 
 def fits(front, scenario, model):
     """Whether a front belongs to the mission and the model."""
-    return front.scenario.replace(name="") == scenario.replace(name="", problem=front.scenario.problem) and (
-        front.model == model)
+    return front is not None and front.model == model and (
+        front.scenario.replace(name="") == scenario.replace(name="", problem=front.scenario.problem))
 
 
 # ---- readings -------------------------------------------------------------------------------------------------
@@ -127,27 +127,9 @@ def against(a, pins):
 
 # ---- pictures: each of an Answer and a size -------------------------------------------------------------------
 
-def log(a, size):
-    ghosts = [(letter, cls, found.log) for letter, cls, found in a.ghosts]
-    return pictures.log(a.result, a.scenario, a.model.soc_initial, size, ghosts)
-
-
-def mass(a, size):
-    return pictures.mass(a.result, size, spans(a, "total_mass_kg")[0], a.ghosts)
-
-
-def wheel(a, size):
-    return pictures.wheel(a.result, a.design, a.scenario, a.model, size)
-
-
-def fleet(a, size):
-    found = spans(a, "total_mass_kg", "range_km") if a.sure else None
-    return pictures.fleet(a.result, rovers(a, "total_mass_kg", "range_km"), size, found, a.ghosts)
-
-
 def spans(a, *names):
-    """The intervals of some metrics, None each while they are not those of this state."""
-    return [(a.spans.low[name], a.spans.high[name]) if a.sure else None for name in names]
+    """The intervals of some metrics; None while they are not those of this state."""
+    return [(a.spans.low[name], a.spans.high[name]) for name in names] if a.sure else None
 
 
 def rovers(a, *names):
@@ -183,19 +165,14 @@ def swept_over(now):
     return {name: span_of(name, MAP if len(names) == 2 else CURVE) for name in names}
 
 
-def _swept(a):
-    """What a sweep over one field shows, so that a band of another is not taken for its own."""
-    return a.now["sweep_first"], a.now["sweep_metric"]
-
-
 def band_of(a):
     """The 90 % interval along a sweep over one field: what it is of, and (values, low, high)."""
-    name, metric = _swept(a)
+    name, metric = of = a.now["sweep_first"], a.now["sweep_metric"]
     knots = span_of(name, CURVE)[::5]
     draws = {n: v[:BAND_DRAWS, None] for n, v in uncertain_inputs(a.scenario, draws=DRAWS, model=a.model).items()}
     *changed, model = replaced(a.design, a.scenario, a.model, draws | {name: knots})
     values = np.asarray(getattr(evaluate(*changed, model=model), metric), float)
-    return _swept(a), (knots * NUMBERS[name].factor, *np.quantile(np.nan_to_num(values), [0.05, 0.95], axis=0))
+    return of, (knots * NUMBERS[name].factor, *np.quantile(np.nan_to_num(values), [0.05, 0.95], axis=0))
 
 
 def swept(a, size):
@@ -223,9 +200,10 @@ def swept(a, size):
     others = None
     if name in DESIGN_SPACE:                             # a mission's field is not the rovers' own
         others = getattr(published()[1], name) * f.factor, *rovers(a, metric)
-    return pictures.curve(axes[0], metric, points * f.factor, values, stalled,
-                          a.band[1] if a.band[0] == _swept(a) else None, (here[0], float(getattr(a.result, metric))),
-                          others, size, log=not f.step, old=not a.sure)
+    band = a.band[1] if a.band[0] == (name, metric) else None
+    here = here[0], float(getattr(a.result, metric))
+    return pictures.curve(axes[0], metric, points * f.factor, values, stalled, band, here, others, size,
+                          log=not f.step, old=not a.sure)
 
 
 def front(a, size):
@@ -249,7 +227,14 @@ def front(a, size):
                           a.ghosts, front.designs)
 
 
-PICTURES = {"log": log, "mass": mass, "wheel": wheel, "fleet": fleet, "why": why, "sweep": swept, "optimise": front}
+PICTURES = {
+    "log": lambda a, size: pictures.log(a.result, a.scenario, a.model.soc_initial, size,
+                                        [(letter, cls, found.log) for letter, cls, found in a.ghosts]),
+    "mass": lambda a, size: pictures.mass(a.result, size, (spans(a, "total_mass_kg") or [None])[0], a.ghosts),
+    "wheel": lambda a, size: pictures.wheel(a.result, a.design, a.scenario, a.model, size),
+    "fleet": lambda a, size: pictures.fleet(a.result, rovers(a, "total_mass_kg", "range_km"), size,
+                                            spans(a, "total_mass_kg", "range_km"), a.ghosts),
+    "why": why, "sweep": swept, "optimise": front}
 
 
 def solved(design, scenario, model, name):

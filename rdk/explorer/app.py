@@ -40,11 +40,9 @@ class Explorer(State):
 
     Parameters
     ----------
-    rover : str or Design
-        Where to start: a name of `rdk.rover_names()`, or a single design. Values beyond a slider are cut to its end,
-        and a notice says so.
-    scenario : str or Scenario
-        A name of `rdk.scenario_names()`, or a single mission.
+    rover, scenario : str or Design, str or Scenario
+        Names of `rdk.rover_names()` and `rdk.scenario_names()`, or single records. Values beyond a slider are cut to
+        its end, and a notice says so.
     view : str
         The picture shown first: "log", "mass", "wheel", "fleet", "why", "sweep" or "optimise".
     model : Model
@@ -54,14 +52,12 @@ class Explorer(State):
 
     Attributes
     ----------
-    design, scenario, model : Design, Scenario, Model
-        What the inputs show.
+    design, scenario, model, state : Design, Scenario, Model, dict
+        What the inputs show; `state` has every input by its name, as `set` takes them.
     result, intervals, binding : Performance, Intervals, Binding
         What the readings show, once settled.
     front : Front or None
         The last front: of a search, of the live search, or loaded.
-    state : dict
-        Every input by its name, as `set` takes them.
     error : str
         What went wrong in the last answer; empty where nothing did.
 
@@ -75,7 +71,7 @@ class Explorer(State):
     """
 
     def __init__(self, rover="Rashid-1", scenario="equatorial_mare_traverse", *, view="log", model=Model(), state=""):
-        self.error, self.intervals, self.binding, self._refresher = "", None, None, None
+        self.error, self.intervals, self.binding = "", None, None
         self._thread, self._stop, self._progress, self._status = None, threading.Event(), (0, 1), ""
         self._heard, self._size, self._drawer, self._picture, self._shown = 0, (600, 380), ("", ""), "", ""
         self._table, self._odds, self._band = [], (None, None), (None, None)
@@ -89,10 +85,6 @@ class Explorer(State):
             self._restore_link(text)
         self.settle()
 
-    def _poke(self):
-        if self._refresher is not None:
-            self._refresher.poke()
-
     def settle(self, timeout_s=60):
         """Wait until readings and picture show the present state."""
         self._refresher.settle(timeout_s)
@@ -102,15 +94,11 @@ class Explorer(State):
     def _build(self):
         """The widgets: those of HTML, and the box through which the page speaks."""
         fixed = {"top": page.top(self._app), "left": page.left(self.menus), "views": page.views(self.menus)}
-        self.parts = {name: W.HTML(fixed.get(name, "")) for name in
+        self.parts = {name: W.HTML(fixed.get(name, "")).add_class(f"rdk-{name}") for name in
                       ("top", "drawer", "left", "verdict", "views", "picture", "side", "tray", "data")}
-        self.bridge = W.Text(layout=W.Layout(display="none"))
-        for name, part in (*self.parts.items(), ("bridge", self.bridge)):
-            part.add_class(f"rdk-{name}")
-        grid = W.Box([*self.parts.values(), self.bridge])
-        grid.add_class("rdk-grid")
-        self.widget = W.VBox([grid])
-        self.widget.add_class("rdk-explorer")
+        self.bridge = W.Text(layout=W.Layout(display="none")).add_class("rdk-bridge")
+        grid = W.Box([*self.parts.values(), self.bridge]).add_class("rdk-grid")
+        self.widget = W.VBox([grid]).add_class("rdk-explorer")
         self.bridge.observe(self._hear, "value")
 
     def _hear(self, change):
@@ -141,8 +129,7 @@ class Explorer(State):
         if said:
             self._notice = ("status", said)
 
-    def _on_choose(self, name, text):
-        self.set(**{name: next((value for value in self.menus[name] if str(value) == text), text)})
+    _on_choose = _on_type
 
     def _on_size(self, width, height):
         self._size = min(max(int(width), 300), 2400), min(max(int(height), 260), 800)
@@ -245,10 +232,12 @@ class Explorer(State):
 
     def _show(self, answer):
         """Draw the view, and beside it another where the page is wide."""
-        (width, height), view, scenario, model = self._size, answer.now["view"], answer.scenario, answer.model
+        (width, height), view = self._size, answer.now["view"]
         if view == "optimise" and answer.now["live"] and (
-                self.front is None or self._recipe is not None or not answers.fits(self.front, scenario, model)):
-            self.front, self._recipe = live_front(scenario, self.front, model), None
+                self._recipe is not None or not answers.fits(self.front, answer.scenario, answer.model)):
+            self.front, self._recipe = pareto_front(    # small and warm-started, to follow a slider: less complete
+                plain(answer.scenario), population=LIVE[0], generations=LIVE[1] // (1 if self.front is None else 2),
+                seed=1, start=self.front, model=answer.model, warn=False), None
         names = [view] + (["mass" if view == "log" else "log"] if width >= WIDE else [])
         answer = answer._replace(front=self.front, odds=self._odds, band=self._band)
         size = (width - 14 * (len(names) - 1)) // len(names), height
@@ -386,10 +375,3 @@ class Explorer(State):
             self.set(**{name: value})
         self._notice = ("alert" if value is None else "status", said)
         self._poke()
-
-
-def live_front(scenario, start=None, model=Model()):
-    """A Front quick enough to follow a slider: a small population, warm-started from the last, so less complete."""
-    population, generations = LIVE
-    return pareto_front(plain(scenario), population=population, seed=1, start=start, model=model, warn=False,
-                        generations=generations if start is None else generations // 2)

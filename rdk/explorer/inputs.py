@@ -154,10 +154,11 @@ def label(name):
 def check(name, value, menus):
     """The value of an input set from Python, or a ValueError that says what is allowed."""
     if name in menus:
-        value = value.item() if isinstance(value, (np.integer, np.bool_)) else value
-        if not isinstance(value, (str, int, float)) or value not in menus[name]:
+        single = isinstance(value, (str, int, float, np.generic))
+        known = [choice for choice in menus[name] if single and (choice == value or str(choice) == value)]
+        if not known:
             raise ValueError(f"{name} must be one of {', '.join(map(str, menus[name]))}; got {value!r}")
-        return value
+        return known[0]
     if name == "start_utc":
         text = str(value).strip()
         if text.lower() in ("", NONE):
@@ -175,8 +176,7 @@ def from_text(text):
     """Names and values of a link's query, unchecked; numbers are read where the input is one."""
     found = {}
     for name, value in parse_qsl(text.strip().lstrip("?")):
-        kind = float if name in NUMBERS else int if name in ("wheel_count", "survive", "site_height_m") else str
         with contextlib.suppress(ValueError):            # `check` will say what it should have been
-            value = kind(value)
+            value = float(value) if name in NUMBERS else value
         found[name] = value
     return found

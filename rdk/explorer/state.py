@@ -32,12 +32,12 @@ skyline = functools.cache(catalog.skyline)
 
 
 class State:
-    """What the inputs of an explorer show, and everything that changes it; `_poke` asks for a new answer."""
+    """What the inputs of an explorer show, and everything that changes it."""
 
     def __init__(self, design, mission, model):
         single(rover=design, scenario=mission, model=model)
         self.menus, self.front, self.result = choices(), None, None
-        self._recipe = self._before = None
+        self._recipe = self._before = self._refresher = None
         self._lock = threading.RLock()
         self._past, self._future, self._drag, self._pins = [], [], ("", 0), []
         self._notice = ("", "")
@@ -51,6 +51,8 @@ class State:
 
     def _poke(self):
         """Ask for an answer to the state as it is now."""
+        if self._refresher is not None:
+            self._refresher.poke()
 
     design = property(lambda self: self._now[0], doc="The Design that the inputs show.")
     scenario = property(lambda self: self._now[1], doc="The Scenario that the inputs show, with its demands and goals.")
@@ -111,13 +113,7 @@ class State:
             self._poke()
 
     def set(self, **values):
-        """Set inputs by name, such as `slope_deg=20`, `soil="fjs-1"`, `view="why"` or `population=30`.
-
-        Raises
-        ------
-        ValueError
-            If there is no such input, or it does not take the value; the message says what is allowed.
-        """
+        """Set inputs by name, such as `slope_deg=20, soil="fjs-1", view="why"`; a ValueError says what is allowed."""
         self._move(values)
 
     def _move(self, values, drag=("", 0)):
@@ -263,17 +259,12 @@ class State:
 
     # ---- files ------------------------------------------------------------------------------------------------
 
-    def _own_front(self):
-        """The front, where it belongs to the mission and the model as they stand."""
-        front = self.front
-        return front if front is not None and answers.fits(front, self.scenario, self.model) else None
-
     def file(self, name):
         """The text of a file: design.json, design.csv, front.json, front.csv, picture.svg or report.html."""
         design, scenario, front = self.design, self.scenario, self.front
         if name.startswith("front") and not front:
             raise ValueError("there is no front yet: run a search first")
-        rover = self.state["rover"]
+        rover, own = self.state["rover"], answers.fits(front, scenario, self.model)
         made = {"design.json": lambda: catalog.to_json(design, scenario),
                 "design.csv": lambda: catalog.to_csv(design, self.result),
                 "front.json": lambda: catalog.to_json(front.designs, front.scenario),
@@ -281,7 +272,7 @@ class State:
                 "picture.svg": lambda: self._picture,
                 "report.html": lambda: report(
                     design, scenario, f"{'A rover' if rover == OWN else rover} for {title(scenario.name)}",
-                    model=self.model, front=self._own_front(),
+                    model=self.model, front=front if own else None,
                     candidates={f"{letter} {name}": other for (letter, *_), (name, other) in zip(PINS, self._pins)})}
         if name not in made:
             raise ValueError(f"no file {name!r}; choose from {', '.join(made)}")
@@ -295,8 +286,7 @@ class State:
             design, mission = (catalog.from_csv(text), None) if table else catalog.from_json(text)
         except ValueError as error:                      # also where the bytes are no text
             self._notice = ("alert", f"{name} was not loaded: {error}")
-            self._poke()
-            return
+            return self._poke()
         note = f"{name} loaded"
         with self._step():
             if design.shape:
