@@ -11,6 +11,7 @@ import time
 import urllib.request
 from pathlib import Path
 
+from folders import writable_copy
 from playwright.sync_api import sync_playwright
 
 REPO = Path(__file__).parents[1]
@@ -77,7 +78,7 @@ def served(command, folder, answers):
 def lab(folder):
     """JupyterLab on a copy of the notebooks; gives its address and token."""
     root = folder / "root"
-    shutil.copytree(REPO / "notebooks", root / "notebooks", ignore=shutil.ignore_patterns(".ipynb_checkpoints"))
+    writable_copy(REPO / "notebooks", root / "notebooks")
     for name, settings in {"apputils-extension/notification": {"fetchNews": "false", "checkForUpdates": False},
                            "notebook-extension/tracker": {"windowingMode": "none"}}.items():
         path = folder / "settings/@jupyterlab" / f"{name}.jupyterlab-settings"

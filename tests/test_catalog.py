@@ -4,10 +4,10 @@ import csv
 import io
 import json
 import math
-import shutil
 from pathlib import Path
 
 import pytest
+from folders import writable_copy
 
 import rdk
 from rdk import catalog
@@ -22,7 +22,7 @@ READERS = {"soils.csv": lambda: rdk.soil("apollo-nominal"),
 def folder(tmp_path, monkeypatch):
     """A copy of the data folder that the catalogue reads instead."""
     copy = tmp_path / "data"
-    shutil.copytree(DATA, copy)
+    writable_copy(DATA, copy)
     monkeypatch.setattr(catalog, "DATA", copy)
     yield copy
     catalog._rows.cache_clear()

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from folders import writable_copy
 
 REPO = Path(__file__).parents[1]
 TEXT = (REPO / ".github/CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -19,7 +20,7 @@ def copy(tmp_path_factory):
     """A copy of rdk and data, with every example row appended, as the recipes say."""
     folder = tmp_path_factory.mktemp("copy")
     for name in "rdk", "data":
-        shutil.copytree(REPO / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        writable_copy(REPO / name, folder / name)
     for path, lines in ROWS:
         with (folder / path).open("a", encoding="utf-8", newline="\n") as file:
             file.write(lines)

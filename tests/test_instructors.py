@@ -4,6 +4,7 @@ import csv
 import json
 import random
 import re
+import stat
 import subprocess
 import sys
 from pathlib import Path
@@ -307,7 +308,9 @@ def test_a_handout_holds_every_notebook_and_no_solution(given_out):
 def test_a_handout_has_what_it_needs_and_nothing_of_the_instructors(given_out):
     assert not [path for path in given_out.rglob("*") if path.name in (*instructors.OURS, "exemplars")]
     assert "For instructors" not in (given_out / "README.md").read_text(encoding="utf-8")
-    done = subprocess.run([sys.executable, "-c", "import drawings, ledger, registry, searches, wheel_coverage\n"
+    done = subprocess.run([sys.executable, "-c",
+                           "import chance, drawings, ledger, registry, searches, sensitivity, wheel_coverage
+"
                            "from exercises import check\n"
                            "assert check('01.1', 2 ** (2 / 3)) and not check('01.1', ...)"], cwd=given_out,
                           env={"PYTHONPATH": str(REPO), "PATH": ""}, capture_output=True, text=True)
@@ -316,3 +319,19 @@ def test_a_handout_has_what_it_needs_and_nothing_of_the_instructors(given_out):
         prose = "\n".join(c.source for c in nbformat.read(path, as_version=4).cells if c.cell_type == "markdown")
         local = re.findall(r"\]\((?![a-z]+:|#|\.\.)([^)\s#]+)", prose)
         assert local and not [target for target in local if not (given_out / target).exists()], path.name
+
+
+def test_a_handout_from_a_read_only_clone_can_be_written_in(tmp_path, monkeypatch):
+    clone = tmp_path / "clone"
+    for part in "drawings", "exercises":
+        (clone / part).mkdir(parents=True)
+        (clone / part / "part.py").touch()
+    (clone / "README.md").touch()
+    for path in clone.rglob("*"):
+        path.chmod(path.stat().st_mode & ~0o222)
+    monkeypatch.setattr(instructors, "NOTEBOOKS", clone)
+    instructors.handout(tmp_path / "handout")
+    copied = list((tmp_path / "handout").rglob("*"))
+    assert len(copied) == 5 and all(path.stat().st_mode & stat.S_IWUSR for path in copied)
+    for path in clone.rglob("*"):                        # that the folder can be removed
+        path.chmod(path.stat().st_mode | stat.S_IWUSR)

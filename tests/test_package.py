@@ -8,6 +8,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from folders import writable_copy
 
 REPO = Path(__file__).parents[1]
 
@@ -23,7 +24,7 @@ def wheel(tmp_path_factory):
     """A wheel built from a copy of the sources, so that the clone may be read-only."""
     folder = tmp_path_factory.mktemp("sources")
     for name in ("rdk", "data"):
-        shutil.copytree(REPO / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        writable_copy(REPO / name, folder / name)
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(REPO / name, folder)
     run("-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", folder / "out", folder)

@@ -10,6 +10,7 @@ import hashlib
 import json
 import re
 import shutil
+import stat
 from collections import Counter
 from pathlib import Path
 
@@ -51,6 +52,8 @@ def handout(folder):
     for pattern in ("*.py", "*.md", "app.ipynb", "*.png"):
         for path in NOTEBOOKS.glob(pattern):
             shutil.copy(path, folder)
+    for path in folder.rglob("*"):                       # the clone may be read-only
+        path.chmod(path.stat().st_mode | stat.S_IWUSR)
     guide = (NOTEBOOKS / "README.md").read_text(encoding="utf-8").partition("## For instructors")[0]
     (folder / "README.md").write_text(guide.rstrip() + "\n", encoding="utf-8")
     return len(paths)
