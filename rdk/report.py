@@ -121,19 +121,10 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
            why="total_mass_kg", bounds=None, candidates=None, model=Model(), draws=DRAWS):
     """A one-page report on a single design and the demands of a single mission's problem, as the text of an HTML file.
 
-    Parameters
-    ----------
-    notes : str
-        What to know beyond the tables: choices, risks, doubts; an empty line starts a paragraph.
-    front : Front, optional
-        Shown with the design on it; without one, the published rovers are shown.
-    baseline : Design, optional
-        Whose difference in the metric `why` is attributed to the variables; by default another rover, published and
-        nearest in mass.
-    bounds : dict of str to (float, float), optional
-        Limits of design variables in place of those in DESIGN_SPACE.
-    candidates : dict of str to Design, optional
-        Other designs, shown beside this one.
+    `notes` say what to know beyond the tables: choices, risks, doubts; an empty line starts a paragraph. A `front` is
+    shown with the design on it, in place of the published rovers. The difference to `baseline` in the metric `why` is
+    attributed to the variables; by default it is another rover, published and nearest in mass. `bounds` has limits
+    (low, high) of variables in place of those in DESIGN_SPACE; `candidates` are other designs by name, for a table.
 
     Examples
     --------
@@ -200,16 +191,7 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
 
 
 def write_report(design, scenario, path, title=None, notes="", **options):
-    """Write the page of `report` to an HTML file; `options` go to `report`. Returns the path.
-
-    Examples
-    --------
-    >>> import rdk, tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     page = write_report(rdk.rover("Rashid-1"), rdk.scenario("polar_prospecting"), folder + "/rover.html")
-    >>> page.name
-    'rover.html'
-    """
+    """Write the page of `report` to an HTML file; `options` go to `report`. Returns the path."""
     require(design=(design, Design), scenario=(scenario, Scenario))
     return write(report(design, scenario, f"A rover for {scenario.name}" if title is None else title, notes, **options),
                  path)

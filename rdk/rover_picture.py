@@ -9,20 +9,18 @@ from . import terramechanics
 from .design import Model
 from .explain import failing
 
-STYLE = """
-.rdk-svg{font:11.5px system-ui,'Segoe UI','DejaVu Sans',sans-serif;color:var(--rdk-ink,#1a2230);max-width:100%}
-.rdk-svg text{fill:currentColor}.rdk-svg .q{opacity:.78}.rdk-svg .s{font-size:10.5px}.rdk-svg .b{font-weight:600}
-.rdk-svg .e{text-anchor:end}.rdk-svg .m{text-anchor:middle}.rdk-svg .g{stroke:currentColor;opacity:.16}
-.rdk-svg .a{stroke:currentColor;opacity:.55}.rdk-svg .n{fill:none}.rdk-svg .l{fill:none;stroke-width:2}
-.rdk-svg .t{stroke-width:1.2}.rdk-svg .w{stroke-width:5}.rdk-svg .d *{vector-effect:non-scaling-stroke}
-.rdk-svg .c0{stroke:var(--rdk-c0,#0072b2)}.rdk-svg .c1{stroke:var(--rdk-c1,#c04a00)}.rdk-svg .c3{stroke:currentColor}
-.rdk-svg .c2{stroke:var(--rdk-c2,#007a59)}.rdk-svg .f0{fill:var(--rdk-c0,#0072b2)}.rdk-svg .f3{fill:currentColor}
-.rdk-svg .f1{fill:var(--rdk-c1,#c04a00)}.rdk-svg .f2{fill:var(--rdk-c2,#007a59)}
-.rdk-svg .h{paint-order:stroke;stroke:var(--rdk-card,#fff);stroke-width:3px;stroke-linejoin:round}
-.rdk-svg .o{stroke:currentColor;stroke-width:1.6;fill:var(--rdk-part,#e6ebf2)}
-.rdk-svg .soil{fill:var(--rdk-soil,#e4e0da)}.rdk-svg .bad{stroke:var(--rdk-red,#b42318);stroke-width:2.6}
-.rdk-svg text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}
-:root.rdk-svg{background:#fff}""".replace("\n", "")
+STYLE = ".rdk-svg{font:11.5px system-ui,'Segoe UI','DejaVu Sans',sans-serif;color:var(--rdk-ink,#1a2230);max-width:100%"
+STYLE += "}:root.rdk-svg{background:#fff}" + "".join(f".rdk-svg {rule}" for rule in """
+    *{vector-effect:non-scaling-stroke} text{fill:currentColor} .q{opacity:.78} .s{font-size:10.5px} .b{font-weight:600}
+    .e{text-anchor:end} .m{text-anchor:middle} .g{stroke:currentColor;opacity:.16} .a{stroke:currentColor;opacity:.55}
+    .n{fill:none} .l{fill:none;stroke-width:2} .t{stroke-width:1.2} .w{stroke-width:5} .c0{stroke:var(--rdk-c0,#0072b2)}
+    .c1{stroke:var(--rdk-c1,#c04a00)} .c2{stroke:var(--rdk-c2,#007a59)} .c3{stroke:currentColor} .f3{fill:currentColor}
+    .f0{fill:var(--rdk-c0,#0072b2)} .f1{fill:var(--rdk-c1,#c04a00)} .f2{fill:var(--rdk-c2,#007a59)}
+    .h{paint-order:stroke;stroke:var(--rdk-card,#fff);stroke-width:3px;stroke-linejoin:round}
+    .o{stroke:currentColor;stroke-width:1.6;fill:var(--rdk-part,#e6ebf2)} .soil{fill:var(--rdk-soil,#e4e0da)}
+    .bad{stroke:var(--rdk-red,#b42318);stroke-width:2.6}
+    text.bad{fill:var(--rdk-red,#b42318);stroke:none;font-weight:600}
+    """.split())
 """Styles of every SVG of the collection; a page may set the variables, as the explorer does for dark themes.
 
 A picture that stands alone, such as a notebook's output, knows nothing of its page and brings a white ground."""
@@ -46,6 +44,11 @@ def svg(width, height, body, words, role="img"):
     return element("svg", "rdk-svg", f"<style>{STYLE}</style>{body}", xmlns="http://www.w3.org/2000/svg",
                    viewBox=f"0 0 {width:g} {height:g}", width=f"{width:g}", height=f"{height:g}", role=role,
                    aria_label=html.escape(words))
+
+
+def placed(x, y, scale, up, *parts):
+    """Parts drawn in metres, their origin at a pixel; `up` is -1 where heights count upwards."""
+    return element("g", "", "".join(parts), transform=f"translate({x:.1f} {y:.1f}) scale({scale:.2f} {up * scale:.2f})")
 
 
 def rover_picture(design, performance=None, scenario=None, *, width=300, scale=None):
@@ -101,19 +104,16 @@ def rover_picture(design, performance=None, scenario=None, *, width=300, scale=N
             parts.append(box(cls, length * at, floor + 0.08 * tall, length * 0.4, high,
                              f"<title>{name} {kg:.2f} kg</title>", opacity=0.75))
     parts.append(element("path", "c3", d=f"M0 {roof}V{middle}"))
-    scene = element("g", "d", "".join(parts), transform=f"rotate({slope})") + element(
-        "path", "l w c0" + tone["array"], d="M{} {}L{} {}".format(*tips[0], *tips[1]))
-    scene = element("g", "d", scene, transform=f"translate({left:.1f} {level:.1f}) scale({scale:.2f} {-scale:.2f})")
+    array = element("path", "l w c0" + tone["array"], d="M{} {}L{} {}".format(*tips[0], *tips[1]))
+    scene = placed(left, level, scale, -1, element("g", "", "".join(parts), transform=f"rotate({slope})"), array)
     scene = element("svg", "", scene, width=width, height=float(height))     # cuts off the soil beyond
-    sheet = element("g", "d", box("n a", -A4_M[0], 0, *A4_M),
-                    transform=f"translate({width - 14} 26) scale({scale:.2f})")
+    sheet = placed(width - 14, 26, scale, 1, box("n a", -A4_M[0], 0, *A4_M))
     top, wide = height + 16, side * np.cos(lean)
-    plan = "".join(box("o" + tone["wheels"], x - r, way * depth / 2 - b / 2, 2 * r, b) for x in wheels
-                   for way in (-1, 1))
-    plan += (box("o" + tone["body"], -length / 2, -0.3 * depth, length, 0.6 * depth, rx=4 / scale)
-             + box("f0", -wide / 2, -side / 2, wide, side, opacity=0.22))
     centre = top + 14 + scale * max(above, side) / 2
-    plan = element("g", "d", plan, transform=f"translate({width / 2} {centre:.1f}) scale({scale:.2f})")
+    plan = placed(width / 2, centre, scale, 1, *(
+        box("o" + tone["wheels"], x - r, way * depth / 2 - b / 2, 2 * r, b) for x in wheels for way in (-1, 1)),
+        box("o" + tone["body"], -length / 2, -0.3 * depth, length, 0.6 * depth, rx=4 / scale),
+        box("f0", -wide / 2, -side / 2, wide, side, opacity=0.22))
     end = max(centre + scale * max(above, side) / 2, top + 20) + 18
     notes = [text(4, 14, f"side, on {slope:g}°", "q s b"), text(width - 14, 40 + scale * A4_M[1], "A4", "q s e"),
              text(4, top + 4, f"top, wheelbase {base:.3g} m", "q s b"),
@@ -163,8 +163,7 @@ def wheel_picture(design, performance, scenario, *, model=Model(), width=300, he
                  f"{np.degrees(entry):.0f} degrees; normal stress up to {along[1].max():.1f} kPa, shear to "
                  f"{along[2].max():.1f} kPa.")
     soil = element("rect", "soil", x=0, y=ground, width=width, height=height - ground)
-    wheel = element("g", "d", body, transform=f"translate({width / 2} {ground:.1f}) scale({scale:.2f} {-scale:.2f})")
-    return svg(width, height, soil + wheel + notes, words)
+    return svg(width, height, soil + placed(width / 2, ground, scale, -1, body) + notes, words)
 
 
 def contact(design, performance, scenario, model, points):
