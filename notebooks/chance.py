@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from rdk._fields import check
+from rdk._fields import generator, whole
 from rdk.design import DESIGN_SPACE, Design, Model
 from rdk.mission import evaluate, mass_of
 from rdk.rediscovery import Target, unit_cube
@@ -23,9 +23,8 @@ def baselines(found: pd.DataFrame, *, count: int = 20000, seed: int = 0) -> pd.D
     random designs met it).
     """
     require_table("found", found, "rediscover", "rover", "front_designs")
-    count, seed = (check(name, value, low, whole=True, scalar=True) for name, value, low in (
-        ("count", count, 100), ("seed", seed, 0)))
-    random, points, rows = np.random.default_rng(seed), random_designs(count, seed=seed), []
+    count, seed = whole("count", count, 100), whole("seed", seed)
+    random, points, rows = generator(seed), random_designs(count, seed=seed), []
     cube = unit_cube(points)
     for row in found.itertuples():
         target = Target.of(row.rover)

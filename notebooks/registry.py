@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 from rdk import catalog
-from rdk._fields import check
+from rdk._fields import check, generator, whole
 from rdk.design import Model
 from rdk.mass import mass_breakdown
 from rdk.mission import MASS_COEFFICIENTS
@@ -85,7 +85,7 @@ def mass_intervals(*, draws: int = DRAWS, seed: int = 0, level: float = 0.9, fix
         inside, share_below (of the draws below the published mass).
     """
     from scipy.stats import qmc, t
-    draws = int(check("draws", draws, 1, whole=True, scalar=True))
+    draws = whole("draws", draws, 1)
     level = check("level", level, above=0, below=1, scalar=True)
     facts = published_facts()
     latest = facts.drop_duplicates(["rover", "field"], keep="last")                      # the later table knows better
@@ -94,7 +94,7 @@ def mass_intervals(*, draws: int = DRAWS, seed: int = 0, level: float = 0.9, fix
     listed = latest[(latest.field == "total_mass_kg") & ~latest.rover.isin(tracked)].sort_values("value", kind="stable")
     rovers, mass = listed.rover.to_numpy(), listed.value.to_numpy()
     table = [row for row in catalog.rows("uncertainties.csv") if row["name"] in MASS_COEFFICIENTS]
-    points = qmc.Sobol(len(GROWING) + 2 + len(uncertain_names(table)), rng=np.random.default_rng(seed)).random_base2(
+    points = qmc.Sobol(len(GROWING) + 2 + len(uncertain_names(table)), rng=generator(seed)).random_base2(
         math.ceil(math.log2(draws)))[:draws]
     points = np.clip(points, 2.0**-32, 1 - 2.0**-32)     # a scrambled sequence can hold 0
     sizes, known = {}, np.zeros(len(rovers), int)

@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 
 from rdk import catalog
-from rdk._fields import check, unknown
+from rdk._fields import generator, unknown, whole
 from rdk.design import DESIGN_SPACE, Design, Model, Scenario
 from rdk.mission import evaluate
 from rdk.sampling import METRICS, decode, replaced, single
@@ -25,10 +25,9 @@ def family(name: str, count: int, seed: int = 0) -> list[Scenario]:
     if not all(ranges):
         known = ", ".join(catalog.scenario_names("canonical"))
         raise ValueError(f"scenario {name!r} has no family; choose from {known}")
-    count, seed = (check(what, value, low, whole=True, scalar=True) for what, value, low in (
-        ("count", count, 1), ("seed", seed, 0)))
+    count = whole("count", count, 1)
     low, high = np.array([text.split("..") for text in ranges], float).T
-    points = qmc.scale(qmc.LatinHypercube(3, rng=np.random.default_rng(seed)).random(count), low, high)
+    points = qmc.scale(qmc.LatinHypercube(3, rng=generator(seed)).random(count), low, high)
     return [catalog.at_latitude(scenario, latitude).replace(name=f"{name} {i}", duration_earth_days=duration,
                                                             slope_deg=slope)
             for i, (latitude, duration, slope) in enumerate(points.tolist(), 1)]
@@ -48,7 +47,7 @@ def sobol(scenario: Scenario, *, metrics=("range_km", "total_mass_kg", "slope_ca
     """
     from scipy.stats import qmc, sobol_indices
     single(scenario=scenario, model=model, **{} if design is None else {"design": design})
-    count = check("count", count, 2, whole=True, scalar=True)
+    count = whole("count", count, 2)
     if count & (count - 1):
         raise ValueError(f"count must be a power of 2; got {count}")
     metrics = [metrics] if isinstance(metrics, str) else list(metrics)
@@ -56,7 +55,7 @@ def sobol(scenario: Scenario, *, metrics=("range_km", "total_mass_kg", "slope_ca
         if name not in METRICS:
             raise unknown("metrics: no Performance field", name, METRICS)
     names = list(DESIGN_SPACE) if design is None else uncertain_names()
-    random = np.random.default_rng(check("seed", seed, 0, whole=True, scalar=True))
+    random = generator(seed)
     # two samples of the unit cube, and the first with one column after the other taken from the second
     A, B = np.hsplit(qmc.Sobol(2 * len(names), rng=random).random(count), 2)
     cube = np.concatenate([A, B, *(np.where(np.arange(len(names)) == i, B, A) for i in range(len(names)))])

@@ -6,7 +6,7 @@ shape, times a level that the vertical balance gives in closed form. Same lanes 
 """
 import numpy as np
 
-from ._contact import HALF_PI, both, pair, rule_of, within
+from ._contact import HALF_PI, at_nodes, both, rule_of, within
 from ._roots import inner_surplus, root
 
 NODES, BRAKING_NODES = 12, 16                            # on each arc; on each of the four parts of a braking wheel's
@@ -86,20 +86,11 @@ def shares(theta_1, s, patch):
 
 
 def _shares(theta_1, s, patch, start, end, nodes, weight):
-    """From the nodes u in [start, end] that serve both arcs: theta_m to theta_1 and theta_m to 0, as in `_contact`."""
-    r, b, A, n, c, tan_phi, K, c1, c2 = patch
-    kappa, u = c1 + c2 * np.abs(s), start + nodes * (end - start)
-    theta = np.empty((2, len(nodes), theta_1.size))
-    np.multiply(kappa + u * (1 - kappa), theta_1, out=theta[0])
-    np.multiply((1 - u) * kappa, theta_1, out=theta[1])
-    sin, sin_1 = np.sin(theta), np.sin(theta_1)
-    cos, cos_1 = np.sqrt(1 - sin * sin), np.sqrt(1 - sin_1 * sin_1)
-    depth = cos[0] - cos_1
-    sigma = A * (depth if (n == 1).all() else depth ** n)                # eq. sigma at level 1
-    j = (theta_1 - theta) - (1 - s) * (sin_1 - sin)                      # shear displacement over r
-    mobilised = np.copysign(1 - np.exp(np.abs(j) * (-r / K)), j)
-    friction = sigma * mobilised * tan_phi                               # eq. tau, less cohesion
-    span = pair(1 - kappa, kappa, (end - start) * theta_1 * b * r)       # area of each arc
+    """From the part of both arcs between the nodes' u = start and end."""
+    r, c = patch.r, patch.c
+    kappa, _, sin, _, cos, _, _, sigma, *_, mobilised = at_nodes(theta_1, s, patch, start + nodes * (end - start))
+    friction = sigma * mobilised * patch.tan_phi                         # eq. tau at level 1, less cohesion
+    span = np.array((1 - kappa, kappa)) * ((end - start) * theta_1 * patch.b * r)        # area of each arc
     v, p, t, v_c, p_c, t_c = [both(span * (weight @ f)) for f in (
         sigma * cos + friction * sin, friction * cos - sigma * sin, friction,
         mobilised * sin, mobilised * cos, mobilised)]
@@ -167,9 +158,10 @@ def balance(patch, load, required, low, high):
     return _balanced(patch, load, required, low, high, static_angle(patch, load))
 
 
-def climb(patch, weight, slope, low, high, slip, limit_deg):
-    """Slip balance on a slope (radians) and slope capability in degrees."""
-    load, count = weight * np.cos(slope), weight.size    # eq. required-dp
+def climb(patch, weight, slope_deg, low, high, slip, limit_deg):
+    """Slip balance on a slope and slope capability in degrees."""
+    slope, count = np.radians(slope_deg), weight.size
+    load = weight * np.cos(slope)                        # eq. required-dp
     theta_s = static_angle(patch.take(np.tile(np.arange(count), 2)), np.concatenate([load, weight]))
     return (*_balanced(patch, load, weight * np.sin(slope), low, high, theta_s[:count]),
             _slope(patch, weight, slip, limit_deg, theta_s[count:]))

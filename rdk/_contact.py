@@ -28,16 +28,8 @@ class Patch(NamedTuple):
     c2: np.ndarray
 
     def take(self, lanes):
-        """The patch of the lanes with these numbers."""
+        """Some lanes."""
         return Patch(*[row.take(lanes) for row in self])
-
-
-def pair(front, rear, factor):
-    """Two rows, times a factor; `np.stack` costs more than the numbers of a small batch."""
-    rows = np.empty((2, front.size))
-    np.multiply(front, factor, out=rows[0])
-    np.multiply(rear, factor, out=rows[1])
-    return rows
 
 
 def both(rows):
@@ -61,42 +53,46 @@ STEP_DONE = 1e-5                                         # Newton converges quad
 HALF_PI = np.pi / 2
 
 
-class Arcs:
-    """Stresses at the nodes of both contact arcs; what they add up to, and how that changes.
+def at_nodes(theta_1, s, patch, u):
+    """Geometry, normal stress and mobilised share of the shear strength at the nodes u in [0, 1] of both arcs.
 
     theta = a theta_1 with a(u) from theta_m / theta_1 = kappa to 1 on the front arc and from kappa to 0 on the
     rear one. The rear's theta* at a node is then the front's theta at the same u: one stress serves both arcs.
     """
+    kappa = patch.c1 + patch.c2 * np.abs(s)
+    a = np.empty((2, len(u), theta_1.size))
+    np.multiply(u, 1 - kappa, out=a[0])
+    a[0] += kappa
+    np.multiply(1 - u, kappa, out=a[1])
+    theta = a * theta_1
+    sin, sin_1 = np.sin(theta), np.sin(theta_1)
+    # angles are 0 to 90 deg, so the cosine is a root; twice as fast as cos
+    cos, cos_1 = np.sqrt(1 - sin * sin), np.sqrt(1 - sin_1 * sin_1)
+    depth = cos[0] - cos_1                                               # below the entry point, over r
+    sigma = patch.A * (depth if (patch.n == 1).all() else depth ** patch.n)                  # eq. sigma
+    # how far the soil has been sheared since the entry point, over r; the chord is what the wheel rolled
+    chord = sin_1 - sin
+    j = (theta_1 - theta) - (1 - s) * chord
+    decay = np.exp(np.abs(j) * (-patch.r / patch.K))
+    return kappa, a, sin, sin_1, cos, cos_1, depth, sigma, chord, decay, np.copysign(1 - decay, j)
+
+
+class Arcs:
+    """Stresses on both contact arcs; what they add up to, and how that changes."""
 
     def __init__(self, theta_1, s, patch, rule=DRIVING):
-        r, b, A, n, c, tan_phi, K, c1, c2 = patch
         u, w = rule
-        kappa = c1 + c2 * np.abs(s)
-        a = np.empty((2, len(u), theta_1.size))
-        np.multiply(u, 1 - kappa, out=a[0])
-        a[0] += kappa
-        np.multiply(1 - u, kappa, out=a[1])
-        theta = a * theta_1
-        sin, sin_1 = np.sin(theta), np.sin(theta_1)
-        # angles are 0 to 90 deg, so the cosine is a root; twice as fast as cos
-        cos, cos_1 = np.sqrt(1 - sin * sin), np.sqrt(1 - sin_1 * sin_1)
-        depth = cos[0] - cos_1                                           # below the entry point, over r
-        sigma = A * (depth if (n == 1).all() else depth ** n)            # eq. sigma
-        # how far the soil has been sheared since the entry point, over r; the chord is what the wheel rolled
-        arc, chord = theta_1 - theta, sin_1 - sin
-        j = arc - (1 - s) * chord
-        decay = np.exp(np.abs(j) * (-r / K))
-        mobilised = np.copysign(1 - decay, j)
-        strength = sigma * tan_phi
-        strength += c
-        self.tau = tau = strength * mobilised                            # eq. tau
+        kappa, *self.nodes = at_nodes(theta_1, s, patch, u)
+        _, sin, _, cos, _, _, sigma, _, _, mobilised = self.nodes
+        self.strength = sigma * patch.tan_phi
+        self.strength += patch.c
+        self.tau = tau = self.strength * mobilised                       # eq. tau
         # per unit of area: upward and forward part of both stresses
         self.vertical, self.forward = sigma * cos + tau * sin, tau * cos - sigma * sin
-        self.span = pair(theta_1 * (1 - kappa), theta_1 * kappa, b * r)                  # area of each arc
+        self.span = np.array((theta_1 * (1 - kappa), theta_1 * kappa)) * (patch.b * patch.r)     # area
         self.mean_vertical, self.mean_forward = w @ self.vertical, w @ self.forward
         self.load, self.pull = both(self.span * self.mean_vertical), both(self.span * self.mean_forward)
         self.given = theta_1, s, patch, rule
-        self.nodes = a, sin, sin_1, cos, cos_1, depth, sigma, chord, decay, mobilised, strength
 
     @property
     def torque(self):
@@ -105,12 +101,12 @@ class Arcs:
     @cached_property
     def rates(self):
         """d sigma / d depth, and d tau / d (j / r) at fixed sigma."""
-        (_, _, patch, _), (*_, depth, sigma, _, decay, _, strength) = self.given, self.nodes
-        return sigma * patch.n / depth, strength * decay * (patch.r / patch.K)
+        patch, (*_, depth, sigma, _, decay, _) = self.given[2], self.nodes
+        return sigma * patch.n / depth, self.strength * decay * (patch.r / patch.K)
 
     def _derivative(self, theta_x, sigma_x, j_x, span_x):
         """Of load and pull by a variable x, from what x does to the nodes' angle, sigma and j / r and to the areas."""
-        (_, _, patch, (_, w)), (_, sin, _, cos, *_, mobilised, _) = self.given, self.nodes
+        (_, _, patch, (_, w)), (_, sin, _, cos, *_, mobilised) = self.given, self.nodes
         tau_x = self.rates[1] * j_x
         tau_x += mobilised * (sigma_x * patch.tan_phi)
         v_x = sigma_x * cos
@@ -130,14 +126,11 @@ class Arcs:
 
     def by_slip(self):
         """Derivatives of load and pull by s, which moves theta_m and with it every node."""
-        (theta_1, s, patch, (u, _)), (a, sin, _, cos, _, _, _, chord, *_) = self.given, self.nodes
+        (theta_1, s, patch, (u, _)), (_, sin, _, cos, _, _, _, chord, *_) = self.given, self.nodes
         kappa_s = patch.c2 * np.copysign(1.0, s) * theta_1
-        theta_s = np.empty_like(a)
-        np.multiply(1 - u, kappa_s, out=theta_s[0])
-        theta_s[1] = theta_s[0]
-        span_s = pair(-kappa_s, kappa_s, patch.b * patch.r)
-        return self._derivative(theta_s, -self.rates[0] * sin[0] * theta_s[0],
-                                chord - theta_s * (1 - (1 - s) * cos), span_s)
+        theta_s = (1 - u) * kappa_s                      # on both arcs
+        return self._derivative(theta_s, -self.rates[0] * sin[0] * theta_s, chord - theta_s * (1 - (1 - s) * cos),
+                                np.array((-kappa_s, kappa_s)) * (patch.b * patch.r))
 
 
 def forces(theta_1, s, patch, rule=DRIVING):
@@ -244,9 +237,10 @@ def balance(patch, load, required, low, high):
     return _slip_balance(patch, load, required, low, high, theta_high, pull_high, np.full_like(load, 0.3))
 
 
-def climb(patch, weight, slope, low, high, slip, limit_deg):
-    """Slip balance on a slope (radians) and slope capability in degrees."""
-    load, count = weight * np.cos(slope), weight.size    # eq. required-dp
+def climb(patch, weight, slope_deg, low, high, slip, limit_deg):
+    """Slip balance on a slope and slope capability in degrees."""
+    slope, count = np.radians(slope_deg), weight.size
+    load = weight * np.cos(slope)                        # eq. required-dp
     # both entry angles in one batch: a batch twice as long costs less than two batches
     twice = patch.take(np.tile(np.arange(count), 2))
     ends = entry_angle(twice, np.concatenate([high, slip]), np.concatenate([load, weight]),
@@ -262,8 +256,8 @@ def climb(patch, weight, slope, low, high, slip, limit_deg):
 def _brakes(patch, load, low):
     """Lanes whose pull at the low end of the slip interval is surely negative.
 
-    Where (1 - s) cos(theta_1) > 1 the soil slides forward under the whole arc, so shear only brakes. A wheel that
-    carries its load within that angle brakes; one evaluation shows it, where the exact pull would take a solve.
+    Where (1 - s) cos(theta_1) > 1 the soil slides forward under the whole arc, so shear only brakes. One evaluation
+    shows that a wheel carries its load within that angle, where the exact pull would take a solve.
     """
     theta_limit = np.arccos(np.minimum(1 / (1 - low), 1))
     return Arcs(theta_limit, low, patch).load > load
@@ -295,16 +289,15 @@ def _balanced(patch, load, required, low, high, theta_high, pull_high, guess, ru
     theta = np.where(buried | stalled, theta_high, np.where(slides, theta_low, np.nan))
     lane = np.flatnonzero(stalled | slides)
     if lane.size:                                        # both ends alike, but the pull may peak or dip between them
-        found = _inner_balance(patch.take(lane), load[lane], required[lane], low[lane], high[lane], stalled[lane],
-                               theta[lane], rule)
+        found = _inner_balance(patch.take(lane), *(a[lane] for a in (load, required, low, high, stalled, theta)), rule)
         kept = np.isfinite(found[0])
         lane, found = lane[kept], found[:, kept]
         slip[lane], theta[lane] = found
         stalled[lane] = slides[lane] = False
     lane = np.flatnonzero(crossing)
     if lane.size:
-        slip[lane], theta[lane] = newton_balance(patch.take(lane), load[lane], required[lane], low[lane], high[lane],
-                                                 theta_high[lane], guess[lane], rule)
+        slip[lane], theta[lane] = newton_balance(
+            patch.take(lane), *(a[lane] for a in (load, required, low, high, theta_high, guess)), rule)
     free = np.flatnonzero(~buried & ~crossing & ~short & (low > 0))
     if free.size:                                        # not even the lowest slip of a driving interval is needed
         theta[free], _, _ = entry_angle(patch.take(free), slip[free], load[free], rule=rule)
@@ -317,10 +310,9 @@ def _balanced(patch, load, required, low, high, theta_high, pull_high, guess, ru
 def _inner_balance(patch, load, required, low, high, short, theta_end, rule):
     """Slip and entry angle of a balance between two ends of one sign; NaN where there is none.
 
-    `short` lanes pull too little at both ends and may peak between them: the root below the peak is theirs. The others
-    pull too much and may dip: theirs is the root above the dip. Either way the pull falls with slip at the end
-    `theta_end` belongs to (the high one of `short` lanes, else the low one), and steeply enough to make up for what is
-    missing there, which one evaluation shows.
+    `short` lanes pull too little at both ends and may peak between them: theirs is the root below the peak. The others
+    pull too much and may dip: theirs is the root above the dip. Either way the pull falls with slip at one end (the
+    high one of `short` lanes), and steeply enough for what is missing there, which one evaluation shows.
     """
     result = np.full((2, load.size), np.nan)
     arcs = Arcs(theta_end, np.where(short, high, low), patch, rule)
@@ -369,8 +361,8 @@ def newton_balance(patch, load, required, low, high, theta, guess, rule):
         theta, s = new_theta, new_s
     lost = np.flatnonzero(np.isnan(result[0]))
     if lost.size:
-        patch, load, required, low, high = everything
-        result[:, lost] = bracketed_balance(patch.take(lost), load[lost], required[lost], low[lost], high[lost], rule)
+        patch, *arrays = everything
+        result[:, lost] = bracketed_balance(patch.take(lost), *(a[lost] for a in arrays), rule)
     return result
 
 

@@ -14,10 +14,7 @@ _ANY = dict(minimum=-math.inf, maximum=math.inf, above=None, below=None, whole=F
 
 
 def number(minimum=-math.inf, maximum=math.inf, *, default=dataclasses.MISSING, **more):
-    """A dataclass field that holds a real number, or an array of them, within the limits that `check` knows.
-
-    `more` may also hold a `doc`, and what the class wants to know of its fields.
-    """
+    """A dataclass field for numbers within the limits that `check` knows; `more` may hold a `doc` and other remarks."""
     return dataclasses.field(default=default, metadata=_ANY | dict(minimum=minimum, maximum=maximum) | more)
 
 
@@ -57,8 +54,6 @@ def check(name, value, minimum=-math.inf, maximum=math.inf, **limits):
     def refusal(value):
         return ValueError(f"{name} must be {_allowed(**limits)}; got {value:.200}")
 
-    if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
-        raise refusal(repr(value))
     listed = isinstance(value, (list, tuple))
     if any(isinstance(part, np.ma.MaskedArray) for part in (value if listed else [value])):
         raise refusal("a masked array: fill or drop what is masked")
@@ -68,7 +63,7 @@ def check(name, value, minimum=-math.inf, maximum=math.inf, **limits):
         raise refusal(repr(value)) from None
     if array.dtype.kind not in "iuf" or listed and any(
             isinstance(part, (bool, np.bool_)) for part in np.asarray(value, object).flat):
-        raise refusal(repr(value))
+        raise refusal(repr(value))                       # a word, None, yes or no
     array = array.astype(float)                          # a copy: the caller's array may change later
     if limits["scalar"] and array.ndim:
         raise ValueError(f"{name} must be one number, not an array; got {array.size} values")
@@ -129,6 +124,23 @@ def unknown(what, name, known):
     return ValueError(f"{what} {name!r}; {'nearest are' if near else 'choose from'} {', '.join(near or known)}")
 
 
+def whole(name, value, minimum=0, optional=False):
+    """A whole number, such as a count or a seed; None too where it is `optional`."""
+    return check(name, value, minimum, whole=True, scalar=True, optional=optional)
+
+
+def generator(seed):
+    """NumPy's random generator of a seed, a whole number; None for one that differs each time."""
+    return np.random.default_rng(whole("seed", seed, optional=True))
+
+
+def frozen(values):
+    """Make arrays read-only."""
+    for value in values:
+        if isinstance(value, np.ndarray):
+            value.flags.writeable = False
+
+
 def require(**kinds):
     """Refuse arguments, each given as name=(value, class), that are not of their class; say how to get one."""
     for name, (value, kind) in kinds.items():
@@ -179,8 +191,7 @@ class Later:
         value = vars(record)[self.name]
         if callable(value):
             value = vars(record)[self.name] = value()
-            if isinstance(value, np.ndarray):
-                value.flags.writeable = False
+            frozen([value])
         return value
 
     def __set__(self, record, value):
@@ -249,17 +260,12 @@ class Record(Shown):
     def trusted(cls, shape, fields):
         """A record of values that are known to be sound, have this shape or none, and belong to nobody else."""
         record = object.__new__(cls)
-        for value in fields.values():
-            if isinstance(value, np.ndarray):
-                value.flags.writeable = False
-        vars(record).update(fields, _shape=shape)
+        record.__setstate__(fields | {"_shape": shape})
         return record
 
     def __setstate__(self, state):
         """A record copied or read by pickle: its arrays are read-only again."""
-        for value in state.values():
-            if isinstance(value, np.ndarray):
-                value.flags.writeable = False
+        frozen(state.values())
         vars(self).update(state)
 
     def numbers(self, prefix=""):
@@ -309,18 +315,16 @@ class Record(Shown):
 
         def pick(value):
             if isinstance(value, Record):
-                return pick_record(value)
+                names = (name for name in _names(type(value)) if name not in value.apart)
+                return dataclasses.replace(value, **{
+                    name: functools.partial(_lanes, value, name, index) if callable(vars(value).get(name))
+                    else pick(getattr(value, name)) for name in names})
             if isinstance(value, np.ndarray) and value.ndim:
                 value = np.broadcast_to(value, shape)[index]
                 return value if np.ndim(value) else value.item()
             return value
 
-        def pick_record(record):
-            changed = {name: functools.partial(_lanes, record, name, index) if callable(vars(record).get(name))
-                       else pick(getattr(record, name)) for name in _names(type(record)) if name not in record.apart}
-            return dataclasses.replace(record, **changed)
-
-        return pick_record(self)
+        return pick(self)
 
     def __iter__(self):
         return (self[i] for i in range(len(self)))

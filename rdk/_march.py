@@ -11,16 +11,6 @@ MEAN_SAMPLES = 200                                       # samples of the missio
 MARCH_ELEMENTS = 2**17                                   # steps x lanes marched at once: 1 MB arrays stay in cache
 
 
-_MARCHED = (                                             # what the march reads of design, scenario and model
-    ("wheel_radius_m", "wheel_count", "solar_area_m2", "battery_capacity_wh", "avionics_power_w",
-     "peak_wheel_torque_nm"),
-    ("latitude_deg", "duty_cycle", "traverse_limit_km", "payload_power_w", "panel_tilt_deg", "panel_azimuth_deg",
-     "maximum_speed_m_s", "start_utc", "longitude_deg", "skyline"),
-    ("solar_constant_w_m2", "panel_efficiency", "dust_factor", "synodic_day_h", "drivetrain_efficiency",
-     "hub_no_load_speed_rad_s", "motor_droop", "soc_initial", "soc_floor", "charge_efficiency",
-     "discharge_efficiency", "stop_at_limit", "exact_floor"))
-
-
 @dataclass(frozen=True)
 class TraverseLog(Record):
     """The march of one design through its mission: one row a time step, powers as averages over the step.
@@ -112,9 +102,7 @@ def _incidence(time_h, lane):
 def traverse(design, scenario, model, slip, torque_nm, stalled, shape, with_arrival=False):
     """March all lanes, in blocks that stay in cache; the results by name, and the log of a single design."""
     size = int(np.prod(shape))
-    records = zip((design, scenario, model), _MARCHED)
-    lanes = {name: getattr(record, name) for record, names in records for name in names}
-    lanes |= dict(slip=slip, torque_nm=torque_nm, stalled=stalled)
+    lanes = vars(design) | vars(scenario) | vars(model) | dict(slip=slip, torque_nm=torque_nm, stalled=stalled)
     lanes = {name: shaped(value, shape).ravel() if isinstance(value, np.ndarray) else value
              for name, value in lanes.items()}
     times, steps = _step_times(scenario, model)
@@ -226,7 +214,7 @@ def _march(lane, work, times, steps, exact, with_log, with_arrival):
                  average_solar_power_w=average, final_soc=soc(stored[-1]),
                  minimum_soc=soc(np.minimum(stored.min(0), initial)), unserved_h=unserved_h)
     if with_arrival:
-        return {"arrival_h": arrival}, None
+        found["arrival_h"] = arrival
     if not with_log:
         return found, None
     return found, _log(lane, times, steps, solar, base_load, driving * mobility, stored, soc(stored), initial,

@@ -25,6 +25,7 @@ DATA = _HERE / "data" if (_HERE / "data").is_dir() else _HERE.parent / "data"   
 _SCENARIO = ("latitude_deg", "duration_earth_days", "slope_deg", "duty_cycle", "traverse_limit_km", "payload_mass_kg",
              "payload_power_w")
 _ALIASES = {"n_wheels": "wheel_count"}                   # in the front files of the original release
+_PARTS = {"soil": Soil, "problem": Problem, "skyline": Skyline}                    # of a Scenario
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _KEYS = {"soils.csv": ("soil",), "scenarios.csv": ("scenario", "kind", "soil"),
          "rovers.csv": ("rover", "use"), "studies.csv": ("scenario",)}
@@ -89,43 +90,43 @@ def _read(kind, row, names, file_name, label, **more):
         raise ValueError(f"{file_name} is damaged: row of {label!r}: {error}") from None
 
 
-def _pick(file_name, kind, key, name):
-    found = {row[key]: row for row in _rows(file_name, DATA)}
+def _named(file_name, key, **where):
+    """The rows of a file that have these values, by their names in the column `key`."""
+    return {row[key]: row for row in _rows(file_name, DATA) if where.items() <= row.items()}
+
+
+def _pick(kind, name, found):
     if not isinstance(name, str) or name not in found:
         raise unknown(f"no {kind}", name, found)
     return found[name]
 
 
-def _names(file_name, key):
-    return tuple(dict.fromkeys(row[key] for row in _rows(file_name, DATA)))
-
-
 def soil_names() -> tuple[str, ...]:
     """Names that `soil` knows."""
-    return _names("soils.csv", "soil")
+    return tuple(_named("soils.csv", "soil"))
 
 
 def scenario_names(kind: str | None = None) -> tuple[str, ...]:
     """Names that `scenario` knows; `kind` is "canonical", "class-generic" or "rover mission"."""
-    kinds = _names("scenarios.csv", "kind")
-    if kind is not None and kind not in kinds:
-        raise unknown("no kind of scenario", kind, kinds)
-    return tuple(row["scenario"] for row in _rows("scenarios.csv", DATA) if kind in (None, row["kind"]))
+    if kind is None:
+        return tuple(_named("scenarios.csv", "scenario"))
+    _pick("kind of scenario", kind, _named("scenarios.csv", "kind"))
+    return tuple(_named("scenarios.csv", "scenario", kind=kind))
 
 
 def rover_names() -> tuple[str, ...]:
     """Names that `rover` knows: the rovers with a full design vector."""
-    return tuple(row["rover"] for row in _rows("rovers.csv", DATA) if row["use"] == "design vector")
+    return tuple(_named("rovers.csv", "rover", use="design vector"))
 
 
 def soil(name: str) -> Soil:
     """A catalogued Soil, one of `soil_names()`."""
-    return _read(Soil, _pick("soils.csv", "soil", "soil", name), limits_of(Soil), "soils.csv", name, name=name)
+    return _read(Soil, _pick("soil", name, _named("soils.csv", "soil")), limits_of(Soil), "soils.csv", name, name=name)
 
 
 def scenario(name: str) -> Scenario:
     """A catalogued Scenario, one of `scenario_names()`, its panel tilted towards the noon sun."""
-    row = _pick("scenarios.csv", "scenario", "scenario", name)
+    row = _pick("scenario", name, _named("scenarios.csv", "scenario"))
     if row["soil"] not in soil_names():
         raise ValueError(f"scenarios.csv is damaged: row of {name!r}: no soil {row['soil']!r} in soils.csv")
     flat = _read(Scenario, row, _SCENARIO, "scenarios.csv", name, name=name, soil=soil(row["soil"]),
@@ -142,10 +143,8 @@ def at_latitude(scenario: Scenario, latitude_deg: float) -> Scenario:
 
 def problem(name: str) -> Problem:
     """How the paper poses a scenario to the optimiser, from `data/studies.csv`; the defaults where it does not."""
-    for row in _rows("studies.csv", DATA):
-        if row["scenario"] == name:
-            break
-    else:
+    row = _named("studies.csv", "scenario").get(name)
+    if row is None:
         return Problem()
     try:
         return Problem(
@@ -165,10 +164,7 @@ def rover(name: str) -> Design:
 
 def rover_row(name: str) -> dict:
     """The full row of a published rover's design vector: published mass, payload, sources."""
-    vectors = {row["rover"]: row for row in _rows("rovers.csv", DATA) if row["use"] == "design vector"}
-    if not isinstance(name, str) or name not in vectors:
-        raise unknown("no rover", name, vectors)
-    return dict(vectors[name])
+    return dict(_pick("rover", name, _named("rovers.csv", "rover", use="design vector")))
 
 
 @functools.cache
@@ -196,16 +192,13 @@ def skyline(site: str, height_m: float = 2) -> Skyline:
     >>> skyline("connecting_ridge_spot_1", 10)
     <Skyline connecting_ridge_spot_1, 10 m: -3.9 to -0.9 deg>
     """
-    sites = skyline_sites()
-    if not isinstance(site, str) or site not in sites:
-        raise unknown("no site", site, sites)
-    if not np.isscalar(height_m) or height_m not in sites[site]["heights_m"]:
-        heights = ", ".join(f"{height:g}" for height in sites[site]["heights_m"])
+    known = _pick("site", site, skyline_sites())
+    if not np.isscalar(height_m) or height_m not in known["heights_m"]:
+        heights = ", ".join(f"{height:g}" for height in known["heights_m"])
         raise ValueError(f"height_m of a tabulated skyline must be one of {heights}; got {height_m!r}")
     rows = _rows("skylines.csv", DATA)
     return Skyline([float(row["azimuth_deg"]) for row in rows], [float(row[f"{site}_{height_m:g}m"]) for row in rows],
-                   sites[site]["latitude_deg"], sites[site]["longitude_deg"], float(height_m),
-                   f"{site}, {height_m:g} m")
+                   known["latitude_deg"], known["longitude_deg"], float(height_m), f"{site}, {height_m:g} m")
 
 
 # ---- designs and missions as files ------------------------------------------------------------------------------
@@ -265,20 +258,11 @@ def from_json(text: str) -> tuple[Design, Scenario | None]:
             if name in kept["design"]:
                 raise ValueError(f"the file's design has both {old!r} and {name!r}")
             kept["design"][name] = kept["design"].pop(old)
-    design = _design(_fields(Design, kept["design"], "design"))
+    design = _design(kept["design"])
     if kept.get("scenario") is None:
         return design, None
-    values = _fields(Scenario, kept["scenario"], "scenario")
     try:
-        values["soil"] = Soil(**_fields(Soil, values["soil"], "soil"))
-        if "problem" in values:
-            posed = _fields(Problem, values["problem"], "problem")
-            demands = {"constraints": [[_number(part) for part in demand] for demand in posed["constraints"]]
-                       } if "constraints" in posed else {}
-            values["problem"] = Problem(**posed | demands)
-        if values.get("skyline") is not None:
-            values["skyline"] = Skyline(**_fields(Skyline, values["skyline"], "skyline"))
-        scenario = Scenario(**values)
+        scenario = _built(Scenario, kept["scenario"], "scenario")
     except (KeyError, TypeError) as error:
         raise ValueError(f"the file's scenario is damaged: {error!r}") from None
     if scenario.shape:
@@ -310,16 +294,24 @@ def _number(value):
     return float(value) if value in ("Infinity", "-Infinity") else value
 
 
-def _fields(kind, values, where):
-    """The fields of a `kind` from a JSON object; unknown ones are refused."""
+def _built(kind, values, where):
+    """A `kind` from a JSON object; unknown fields are refused."""
     if not isinstance(values, dict):
         raise ValueError(f"the file's {where} is damaged: it must be an object; got {values!r:.40}")
-    known = {f.name: f for f in dataclasses.fields(kind)}
-    for name in values:
+    known, fields = {f.name: f for f in dataclasses.fields(kind)}, {}
+    for name, value in values.items():
         if name not in known:
             raise unknown(f"the file's {where} has an unknown field", name, known)
-    return {name: _number(value) if known[name].metadata.get("infinite") and isinstance(value, str)
-            else str(value) if name == "name" else value for name, value in values.items()}
+        if name in _PARTS and value is not None:
+            value = _built(_PARTS[name], value, name)
+        elif name == "constraints":
+            value = [[_number(part) for part in demand] for demand in value]
+        elif name == "name":
+            value = str(value)
+        elif known[name].metadata.get("infinite"):
+            value = _number(value)
+        fields[name] = value
+    return kind(**fields)
 
 
 def to_csv(design: Design, performance: Record | None = None) -> str:
@@ -390,7 +382,7 @@ def _design(values):
     missing = [n for n in DESIGN_SPACE if n not in values]
     if missing:
         raise ValueError(f"the file's design lacks {', '.join(missing)}")
-    design = Design(**values)
+    design = _built(Design, values, "design")
     if len(design.shape) > 1 or 0 in design.shape:
         raise ValueError(f"the file must hold one design or a list of some; got shape {design.shape}")
     return design

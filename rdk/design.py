@@ -83,9 +83,11 @@ class Problem(Record):
     seed: int | None = number(0, whole=True, scalar=True, optional=True, default=None)
 
     def __post_init__(self):
-        if not (isinstance(self.objectives, dict)        # an empty one is for a search to refuse
-                and set(map(str, self.objectives.values())) <= {"max", "min"}):
+        if not isinstance(self.objectives, dict):        # an empty one is for a search to refuse
             raise ValueError(f"objectives must be a dictionary like {{'range_km': 'max'}}; got {self.objectives!r:.80}")
+        for name, way in self.objectives.items():
+            if way not in ("max", "min"):
+                raise ValueError(f"objectives must be named with a way: {name} must be 'max' or 'min'; got {way!r:.80}")
         if not (isinstance(self.constraints, (list, tuple)) and all(
                 isinstance(c, (list, tuple)) and len(c) == 3 and c[1] in (">=", "<=") for c in self.constraints)):
             raise ValueError(f"constraints must be like ('range_km', '>=', 0.1) each; got {self.constraints!r:.80}")

@@ -99,7 +99,7 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
         # load and pull are shared equally; a mass beyond all floats is buried, no error
         weight = np.fmin(mass.total_kg * model.gravity_m_s2 / design.wheel_count, 1e300)
         balance, capability = terramechanics.climbed(
-            design.wheel, scenario.soil, model, weight, scenario.slope_deg, slip_min=model.slip_min,
+            design.wheel, scenario.soil, model, weight_n=weight, slope_deg=scenario.slope_deg, slip_min=model.slip_min,
             slip_max=model.slip_max, capability_slip=model.slope_capability_slip,
             capability_limit_deg=model.slope_capability_limit_deg)
         stance = partial(_stance, design, mass, model)

@@ -48,13 +48,9 @@ def incidence_factor(latitude_deg: Real, hour_angle: Real, tilt_deg: Real = 0.0,
                      declination_deg: Real = 0.0, lit: Real | None = None) -> Real:
     """cos(i) on a tilted panel, eq. solar-incidence, 0 to 1: 0 where the sun is down or behind the panel.
 
-    Parameters
-    ----------
-    tilt_deg, azimuth_deg : float or ndarray
-        Panel tilt from the horizontal and the direction it faces; the other angles are those of `sun_position`.
-    lit : float or ndarray, optional
-        Share of the solar disc above the skyline, from `rdk.sky.lit_fraction`: it takes the place of the cut at the
-        level horizon, below which a ridge still sees the sun.
+    Tilt from the horizontal and azimuth are the panel's, the other angles those of `sun_position`. `lit`, the share of
+    the solar disc above the skyline from `rdk.sky.lit_fraction`, takes the place of the cut at the level horizon, below
+    which a ridge still sees the sun.
     """
     east, north, up, size = _sun_vector(latitude_deg, hour_angle, declination_deg)
     tilt, azimuth = np.radians(tilt_deg), np.radians(azimuth_deg)
@@ -78,14 +74,8 @@ def march_battery(net_power_w: np.ndarray, time_step_h: Real, capacity_wh: Real,
     """Stored energy in Wh after each time step, eq. battery-update, clamped between the floor and a full pack.
 
     Surplus at full charge is discarded; demand on the floor is not served. (The traverse throttles driving there,
-    which cannot lift the charge above the floor: the march does not depend on it.)
-
-    Parameters
-    ----------
-    net_power_w : ndarray, shape (steps, ...)
-        Power into the pack in each step; overwritten, and returned as the result.
-    time_step_h : float or ndarray, shape (steps, ...)
-        Length of the steps. All other arguments have the shape (...).
+    which cannot lift the charge above the floor: the march does not depend on it.) The power into the pack, shape
+    (steps, ...), is overwritten and returned as the result; the steps' length may have its shape, all else has (...).
     """
     energy = net_power_w
     energy *= np.where(energy >= 0, charge_efficiency, 1 / np.asarray(discharge_efficiency))

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ._fields import Shown, check, limits_of, require, unknown
+from ._fields import Shown, check, generator, in_rows, limits_of, require, unknown, whole
 from .design import DESIGN_SPACE, Design, Model, Scenario, single
 from .mission import Performance, evaluate
 from .terramechanics import Soil
@@ -57,8 +57,8 @@ def random_designs(count: int, seed: int | None = None, bounds: dict | None = No
 
     `bounds` has limits (low, high) of some variables in place of those in DESIGN_SPACE; same seed, same designs.
     """
-    count = int(check("count", count, 1, whole=True, scalar=True))
-    return decode(np.random.default_rng(seed).random((count, len(DESIGN_SPACE))), bounds)
+    count = whole("count", count, 1)
+    return decode(generator(seed).random((count, len(DESIGN_SPACE))), bounds)
 
 
 def _limits(bounds):
@@ -86,31 +86,27 @@ def decode(genes: np.ndarray, bounds: dict | None = None) -> Design:
     low, high = _limits(bounds)
     values = {}
     for (name, variable), gene, a, b in zip(DESIGN_SPACE.items(), np.asarray(genes, float).T, low, high):
+        value = np.clip(a + gene * (b - a), a, b)
         if variable.kind == "choice":
-            middle = (variable.low + variable.high) / 2
-            values[name] = np.where(a + gene * (b - a) < middle, variable.low, variable.high)
-        else:
-            value = np.clip(a + gene * (b - a), a, b)
-            values[name] = np.rint(value) if variable.kind == "whole" else value
+            value = np.where(value < (variable.low + variable.high) / 2, variable.low, variable.high)
+        values[name] = np.rint(value) if variable.kind == "whole" else value
     return Design(**values)
 
 
 def encode(designs: Design, bounds: dict | None = None) -> np.ndarray:
     """Genes of designs, shape (n, 11), clipped to the unit cube; the inverse of `decode` up to rounding."""
     low, high = _limits(bounds)
-    columns = np.broadcast_arrays(*(np.atleast_1d(getattr(designs, name)) for name in DESIGN_SPACE))
-    genes = (np.stack(columns, axis=1) - low) / np.where(high > low, high - low, 1)
-    return np.clip(genes, 0, 1)
+    columns = in_rows([getattr(designs, name) for name in DESIGN_SPACE], designs.shape).T
+    return np.clip((columns - low) / np.where(high > low, high - low, 1), 0, 1)
 
 
 def light_corner(genes: np.ndarray) -> None:
-    """Move genes, shape (..., 11), in place to where light designs lie: least width, avionics and wheel count; chassis,
-    array, battery and torque mostly little.
-    """
+    """Move genes, shape (..., 11), in place to where light designs lie: some at their least, others mostly little."""
     names = list(DESIGN_SPACE)
-    genes[..., [names.index(name) for name in ("wheel_width_m", "avionics_power_w", "wheel_count")]] = 0
-    genes[..., [names.index(name) for name in ("chassis_mass_kg", "solar_area_m2", "battery_capacity_wh",
-                                               "peak_wheel_torque_nm")]] **= 3
+    least = "wheel_width_m", "avionics_power_w", "wheel_count"
+    little = "chassis_mass_kg", "solar_area_m2", "battery_capacity_wh", "peak_wheel_torque_nm"
+    genes[..., [names.index(name) for name in least]] = 0
+    genes[..., [names.index(name) for name in little]] **= 3
 
 
 # ---- sweeps ---------------------------------------------------------------------------------------------------
@@ -153,11 +149,8 @@ def replaced(design: Design, scenario: Scenario, model: Model, changes: dict) ->
 def sweep(design: Design, scenario: Scenario, over: dict, *, model: Model = Model()) -> Sweep:
     """Performance of a single design on a single mission along one field or over a grid of two, in one evaluation.
 
-    Parameters
-    ----------
-    over : dict of str to array_like
-        One or two fields of Design, Scenario, Soil or Model with their values; the mission duration and names cannot
-        be swept, since they set the time steps.
+    `over` has one or two fields of Design, Scenario, Soil or Model with their values; names cannot be swept, nor the
+    mission's duration, which sets the time steps.
 
     Examples
     --------
@@ -176,11 +169,10 @@ def sweep(design: Design, scenario: Scenario, over: dict, *, model: Model = Mode
     for name, v in over.items():
         if any(name in limits_of(kind) for kind in (Design, Scenario, Soil, Model)):
             check(f"over: {name}", v, infinite=True)     # what is masked or no number, before it becomes an array
+        if np.ndim(v) != 1 or not np.size(v):
+            raise ValueError(f"over: {name} needs a one-dimensional list of values; got shape {np.shape(v)}")
     values = tuple(np.asarray(v) for v in over.values())
-    for name, v in zip(over, values):
-        if v.ndim != 1 or not v.size:
-            raise ValueError(f"over: {name} needs a one-dimensional list of values; got shape {v.shape}")
-    axes = (values[0],) if len(values) == 1 else (values[0][:, None], values[1][None, :])
+    axes = np.meshgrid(*values, indexing="ij", sparse=True)
     *swept, model = replaced(design, scenario, model, dict(zip(over, axes)))
     return Sweep(tuple(over), values, evaluate(*swept, model=model))
 
@@ -260,8 +252,7 @@ class Intervals(Shown):
         low, median, high = quantile(values, [tail, 0.5, 1 - tail], axis=0, method=method)
 
         def atom(value):                                 # clamps differ by rounding; infinities equal each other
-            near = np.isclose(values, value, rtol=1e-9, atol=0)
-            return near.mean(0) >= ATOM
+            return np.isclose(values, value, rtol=1e-9, atol=0).mean(0) >= ATOM
 
         least, most = np.where(missing, np.inf, values).min(0), np.where(missing, -np.inf, values).max(0)
         return low, median, high, tuple(((low < high) & (atom(end) | atom(extreme)))[()]
@@ -297,14 +288,8 @@ def intervals(design: Design, scenario: Scenario, *, draws: int = DRAWS, seed: i
 
     The inputs are independent, and they are what the table names: not what the models leave out. Metrics that are NaN
     in a draw (a buried wheel) are left out of its percentiles. One design or a flat population; every design sees the
-    same draws, and the same seed gives the same bits.
-
-    Parameters
-    ----------
-    level : float
-        Probability inside the interval, between 0 and 1.
-    table : list of dict, optional
-        In place of `data/uncertainties.csv`; see `inputs_at`.
+    same draws, and the same seed gives the same bits. `level` is the probability inside the interval; the `table` takes
+    the place of `data/uncertainties.csv`.
 
     Examples
     --------
@@ -315,11 +300,11 @@ def intervals(design: Design, scenario: Scenario, *, draws: int = DRAWS, seed: i
     >>> bool(0 < found.share([("range_km", ">=", 30), ("slope_capability_deg", ">=", 15)]) < 1)
     True
     """
-    require(design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
+    require(design=(design, Design))
+    single(scenario=scenario, model=model)
     level = check("level", level, above=0, below=1, scalar=True)
-    if scenario.shape or model.shape or len(design.shape) > 1:
-        raise ValueError("intervals takes one design or a flat population, a single scenario and a single model; got "
-                         f"shapes {design.shape}, {scenario.shape} and {model.shape}")
+    if len(design.shape) > 1:
+        raise ValueError(f"design must be a single one or a flat population; got arrays of shape {design.shape}")
     changes = uncertain_inputs(scenario, draws=draws, seed=seed, model=model, table=table)
     if not changes:
         raise ValueError("table must hold at least one row; got none")

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ._evolution import ELITE, evolve
-from ._fields import Shown, check, unknown
+from ._fields import Shown, check, unknown, whole
 from .design import DESIGN_SPACE, Design, Model, Scenario, single
 from .mission import Performance, evaluate
 from .sampling import METRICS, decode, demands as checked, encode, light_corner, random_designs, replaced
@@ -347,7 +347,7 @@ def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confid
         raise unknown("minimise: no Performance field", minimise, METRICS)
     if confidence is not None:
         confidence = check("confidence", confidence, above=0, below=1, scalar=True)
-    seed = int(check("seed", seed, 0, whole=True, scalar=True))
+    seed = whole("seed", seed)
     asked = tuple(Demand(*one, getattr(given, "why", "")) for given, one in zip(
         demands, checked(demands, "demands", may_contradict=True)))
     if scenario.required_obstacle_height_m > 0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable
 
-from ._fields import check, require
+from ._fields import check, require, whole
 from .design import Model, Scenario
 from .tradespace import Front, budget, pareto_front
 
@@ -38,19 +38,9 @@ def fronts(scenarios: Iterable[Scenario], *, seeds: Iterable[int] | None = None,
            start: str | None = None, model: Model = Model(), executor=None) -> dict[Case, Front]:
     """Fronts for every combination of scenario, seed, shear scale and obstacle height, in that order.
 
-    `Front.save` keeps one in a file.
-
-    Parameters
-    ----------
-    seeds : sequence of int, optional
-        Default: each scenario's own seed, 0 where it has none.
-    population, generations, start
-        As in `pareto_front`; `start` is "light" or None.
-    model : Model
-        Its `shear_scale` is replaced.
-    executor : concurrent.futures.Executor, optional
-        Runs the fronts in parallel: a ProcessPoolExecutor, or a Dask client's `get_executor()`. The result is the
-        same. Default: one after the other, here.
+    The seeds are each scenario's own by default, 0 where it has none; `start` is "light" or None; the shear scales
+    replace the model's. An `executor` runs the fronts in parallel, with the same result: a ProcessPoolExecutor, or a
+    Dask client's `get_executor()`. `Front.save` keeps one front in a file.
     """
     if isinstance(scenarios, (Scenario, str)):
         single = getattr(scenarios, "name", scenarios)
@@ -66,7 +56,7 @@ def fronts(scenarios: Iterable[Scenario], *, seeds: Iterable[int] | None = None,
             raise ValueError(f"{name} must not be empty")
     require(model=(model, Model), **{f"scenarios[{i}]": (s, Scenario) for i, s in enumerate(lists["scenarios"])})
     # refuse a bad value now, not after an hour
-    seeds = [s if s is None else int(check("seeds", s, 0, whole=True, scalar=True)) for s in lists["seeds"]]
+    seeds = [whole("seeds", s, optional=True) for s in lists["seeds"]]
     scales = [check("shear_scales", s, above=0, scalar=True) for s in lists["shear_scales"]]
     heights = [check("obstacle_heights_m", h, 0, scalar=True) for h in lists["obstacle_heights_m"]]
     cases = [Case(scenario, (scenario.problem.seed or 0) if seed is None else seed, scale, height, population,

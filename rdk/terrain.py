@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from . import catalog
-from ._fields import Real, Record, check, floats, limits_of, listed, number, unknown
+from ._fields import Real, Record, check, floats, generator, limits_of, listed, number, unknown
 from .sky import Skyline
 
 RADIUS_M = 1_737_400.0                                   # the sphere of LOLA's heights
@@ -302,7 +302,7 @@ def synthetic(seed: int, *, like: str = "connecting_ridge_10m", cells: int = 256
         raise unknown("no map", like, known)
     cells = check("cells", cells, 32, whole=True, scalar=True)
     step = check("step_m", float(re.search(r"_(\d+)m", like)[1]) if step_m is None else step_m, above=0, scalar=True)
-    rng = np.random.default_rng(check("seed", seed, 0, whole=True, scalar=True))
+    rng = generator(seed)
     wave = np.hypot(np.fft.fftfreq(cells)[:, None], np.fft.fftfreq(cells))
     wave[0, 0] = np.inf                                  # amplitude falls as the wavelength to the power 2.5
     height = np.fft.ifft2(np.fft.fft2(rng.standard_normal((cells, cells))) / wave**2.5).real

@@ -140,21 +140,13 @@ class ContactStress(NamedTuple):
     __repr__ = brief
 
 
-def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: ArrayLike,
-                 **options) -> WheelForces:
+def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: ArrayLike, **options) -> WheelForces:
     """Drawbar pull, torque and sinkage of one wheel at given load and slip.
 
     The entry angle is the one at which the soil's vertical reaction equals the load (the paper's force balance);
-    forces follow from the stress integrals over the contact arc. NaN where no angle in (0, 90 deg) carries the load.
-
-    Parameters
-    ----------
-    vertical_load_n : float or ndarray
-        Load on the wheel, positive.
-    slip : float or ndarray
-        s = 1 - v / (omega r), eq. slip, from -1 to 1; negative when braking.
-    **options
-        See `KernelOptions`.
+    forces follow from the stress integrals over the contact arc. NaN where no angle in (0, 90 deg) carries the load,
+    which is positive. The slip s = 1 - v / (omega r), eq. slip, is -1 to 1 and negative when braking; the options are
+    those of `KernelOptions`.
 
     References
     ----------
@@ -167,14 +159,12 @@ def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: Arr
     >>> f"{forces.drawbar_pull_n:.2f} N at {1000 * forces.sinkage_m:.1f} mm"
     '0.71 N at 5.7 mm'
     """
-    load, slip = check("vertical_load_n", vertical_load_n, above=0), check("slip", slip, -1, 1)
-    found = _solve("carried", wheel, soil, options, slip=slip, vertical_load_n=load)
+    found = _solve("carried", wheel, soil, options, slip=slip, vertical_load_n=vertical_load_n)
     return _reported(WheelForces(*found), options)
 
 
 def slip_balance(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, required_pull_n: ArrayLike, *,
-                 slip_min: ArrayLike = SLIP_MIN, slip_max: ArrayLike = SLIP_MAX,
-                 **options) -> SlipBalance:
+                 slip_min: ArrayLike = SLIP_MIN, slip_max: ArrayLike = SLIP_MAX, **options) -> SlipBalance:
     """The slip at which the drawbar pull equals the pull that the slope demands.
 
     Two equations, vertical load and pull (eq. slip-balance), in two unknowns, entry angle and slip. Where the pull
@@ -183,43 +173,38 @@ def slip_balance(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, required_
     peaks inside the interval and meets the demand twice, the lower slip is the answer. Load (positive) and demand are
     those of one wheel.
     """
-    found = _solve("balance", wheel, soil, options, vertical_load_n=check("vertical_load_n", vertical_load_n, above=0),
-                   required_pull_n=check("required_pull_n", required_pull_n), **_interval(slip_min, slip_max))
+    found = _solve("balance", wheel, soil, options, vertical_load_n=vertical_load_n, required_pull_n=required_pull_n,
+                   slip_min=slip_min, slip_max=slip_max)
     return _reported(SlipBalance(*found), options)
 
 
 def slope_capability(wheel: Wheel, soil: Soil, weight_n: ArrayLike, *, capability_slip: ArrayLike = CAPABILITY_SLIP,
-                     capability_limit_deg: ArrayLike = CAPABILITY_LIMIT_DEG,
-                     **options) -> float | np.ndarray:
-    """Steepest slope that a wheel climbs at the slip of peak pull, in degrees; 0 where it is buried or cannot move.
+                     capability_limit_deg: ArrayLike = CAPABILITY_LIMIT_DEG, **options) -> float | np.ndarray:
+    """Steepest slope in degrees that a wheel climbs at the slip of peak pull; 0 where it is buried or cannot move.
 
     On a slope alpha a wheel of weight w (positive, not its normal component) carries w cos(alpha) and must pull
     w sin(alpha). At fixed slip - 0.6 by the peak-pull convention (Wong 2008) - both are functions of the entry angle
     alone, so F_z^2 + DP^2 = w^2 fixes it and alpha = atan2(DP, F_z). Steeper slopes than the limit are reported as it.
     """
-    return _solve("capability", wheel, soil, options, weight_n=check("weight_n", weight_n, above=0),
-                  **_at_capability(capability_slip, capability_limit_deg))[0]
+    return _solve("capability", wheel, soil, options, weight_n=weight_n, capability_slip=capability_slip,
+                  capability_limit_deg=capability_limit_deg)[0]
 
 
 def climb(wheel: Wheel, soil: Soil, weight_n: ArrayLike, slope_deg: ArrayLike, *, slip_min: ArrayLike = SLIP_MIN,
           slip_max: ArrayLike = SLIP_MAX, capability_slip: ArrayLike = CAPABILITY_SLIP,
-          capability_limit_deg: ArrayLike = CAPABILITY_LIMIT_DEG,
-          **options) -> tuple[SlipBalance, float | np.ndarray]:
+          capability_limit_deg: ArrayLike = CAPABILITY_LIMIT_DEG, **options) -> tuple[SlipBalance, float | np.ndarray]:
     """Slip balance on a slope and slope capability in one call: what a mission needs of the wheel.
 
     The balance is that of load weight * cos(slope) and required pull weight * sin(slope), eq. required-dp, with the
     slope above -90 and below 90 degrees.
     """
-    return climbed(wheel, soil, options, check("weight_n", weight_n, above=0),
-                   check("slope_deg", slope_deg, above=-90, below=90), **_interval(slip_min, slip_max),
-                   **_at_capability(capability_slip, capability_limit_deg))
+    return climbed(wheel, soil, options, weight_n=weight_n, slope_deg=slope_deg, slip_min=slip_min, slip_max=slip_max,
+                   capability_slip=capability_slip, capability_limit_deg=capability_limit_deg)
 
 
-def climbed(wheel, soil, options, weight_n, slope_deg, *, slip_min, slip_max, capability_slip, capability_limit_deg):
-    """What `climb` returns, of values that are known to be sound: those of a Scenario and a Model."""
-    *balance, capability = _solve(
-        "climb", wheel, soil, options, weight_n=weight_n, slope_deg=np.radians(slope_deg), slip_min=slip_min,
-        slip_max=slip_max, capability_slip=capability_slip, capability_limit_deg=capability_limit_deg)
+def climbed(wheel, soil, options, **arrays):
+    """What `climb` returns; `options` may be a KernelOptions, such as a Model: then no number is checked again."""
+    *balance, capability = _solve("climb", wheel, soil, options, **arrays)
     return _reported(SlipBalance(*balance), options), capability
 
 
@@ -227,14 +212,8 @@ def contact_stress(wheel: Wheel, soil: Soil, entry_angle_rad: ArrayLike, slip: A
                    stress_level: ArrayLike = 1.0, **options) -> ContactStress:
     """Normal and shear stress under the wheel at given angles, from the paper's stress distribution.
 
-    Parameters
-    ----------
-    entry_angle_rad : float or ndarray
-        theta_1, in (0, pi/2].
-    angle_rad : float or ndarray
-        theta from the downward vertical; outside [0, theta_1] the stresses are 0.
-    stress_level : float or ndarray
-        Multiplies the normal stress; as `wheel_forces` returns it.
+    Angles run from the downward vertical; outside 0 to the entry angle, itself in (0, pi/2], the stresses are 0. The
+    stress level multiplies the normal stress, as `wheel_forces` returns it.
     """
     def stresses(patch, theta_1, s, theta, level):
         theta_m = (patch.c1 + patch.c2 * abs(s)) * theta_1               # transition angle
@@ -248,10 +227,8 @@ def contact_stress(wheel: Wheel, soil: Soil, entry_angle_rad: ArrayLike, slip: A
         tau = (patch.c + sigma * patch.tan_phi) * -np.expm1(-abs(j) / patch.K) * np.sign(j)
         return sigma * inside, tau * inside, j * inside, theta_m
 
-    entry, slip = check("entry_angle_rad", entry_angle_rad, above=0, maximum=np.pi / 2), check("slip", slip, -1, 1)
-    angle, level = check("angle_rad", angle_rad), check("stress_level", stress_level)
-    return ContactStress(*_solve(stresses, wheel, soil, options, entry_angle_rad=entry, slip=slip, angle_rad=angle,
-                                 stress_level=level))
+    return ContactStress(*_solve(stresses, wheel, soil, options, entry_angle_rad=entry_angle_rad, slip=slip,
+                                 angle_rad=angle_rad, stress_level=stress_level))
 
 
 def grouser_lift(wheel: Wheel, grouser_lift_cap: ArrayLike = 0.6) -> float | np.ndarray:
@@ -282,16 +259,9 @@ def _k_eff(wheel, soil):
     return np.where(k > 0, k, np.nan)[()]
 
 
-def _interval(slip_min, slip_max):
-    low, high = check("slip_min", slip_min, -1, 1), check("slip_max", slip_max, -1, 1)
-    if np.any(np.asarray(low) >= high):
-        raise ValueError(f"slip_min must be below slip_max; got {slip_min} and {slip_max}")
-    return dict(slip_min=low, slip_max=high)
-
-
-def _at_capability(slip, limit_deg):
-    return dict(capability_slip=check("capability_slip", slip, -1, 1),
-                capability_limit_deg=check("capability_limit_deg", limit_deg, 0, below=90))
+_LIMITS = {"vertical_load_n": dict(above=0), "weight_n": dict(above=0), "slope_deg": dict(above=-90, below=90),
+           "capability_limit_deg": dict(minimum=0, below=90), "entry_angle_rad": dict(above=0, maximum=np.pi / 2)} | {
+    name: dict(minimum=-1, maximum=1) for name in ("slip", "slip_min", "slip_max", "capability_slip")}
 
 
 def _reported(forces, options):
@@ -324,6 +294,9 @@ def _solve(solver, wheel, soil, options, **arrays):
             if name not in OPTIONS:
                 raise TypeError(str(unknown("unexpected keyword argument", name, OPTIONS)))
         options = KernelOptions(**options)
+        arrays = {name: check(name, value, **_LIMITS.get(name, {})) for name, value in arrays.items()}
+        if np.any(np.asarray(arrays.get("slip_min", -1)) >= arrays.get("slip_max", 1)):
+            raise ValueError(f"slip_min must be below slip_max; got {arrays['slip_min']} and {arrays['slip_max']}")
     patch, lanes, shape = patch_of(wheel, soil, options, **arrays)
     solve, count = solver if callable(solver) else getattr(KERNELS[options.kernel], solver), lanes.shape[1]
     with np.errstate(all="ignore"):                      # a lane without a solution is NaN, not a warning

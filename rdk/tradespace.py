@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from . import catalog
-from ._fields import Shown, check, require, unknown
-from .design import DESIGN_SPACE, Design, Model, Problem, Scenario
+from ._fields import Shown, unknown, whole
+from .design import DESIGN_SPACE, Design, Model, Problem, Scenario, single
 from .mission import Performance, evaluate
 from .sampling import METRICS, decode, demands, encode, light_corner
 
@@ -163,26 +163,21 @@ def _gain(old, new, objectives, scenario):
 
 def posed(scenario: Scenario, objectives=None, constraints=None, seed=None) -> tuple[Scenario, Problem]:
     """The scenario and the Problem that a search uses: the scenario's own problem, with what the caller changes."""
-    require(scenario=(scenario, Scenario))
-    if scenario.shape:
-        raise ValueError(f"scenario must be a single mission for a search; got arrays of shape {scenario.shape}")
+    single(scenario=scenario)
     problem = scenario.problem
-    if objectives is not None and not isinstance(objectives, dict):
-        raise ValueError(f"objectives must be a dictionary like {{'range_km': 'max'}}; got {objectives!r}")
-    objectives = problem.objectives if objectives is None else dict(objectives)
-    if not objectives:
-        raise ValueError("objectives must name at least one Performance field; got none")
-    for name, direction in objectives.items():
-        if name not in METRICS:
-            raise unknown("objectives: no Performance field", name, METRICS)
-        if direction not in ("max", "min"):
-            raise ValueError(f"objectives: direction of {name} must be 'max' or 'min'; got {direction!r}")
     constraints = demands(problem.constraints if constraints is None else constraints)
     if scenario.required_obstacle_height_m > 0:
         constraints += (("obstacle_capability_m", ">=", scenario.required_obstacle_height_m),)
+    problem = Problem(problem.objectives if objectives is None else objectives, constraints, problem.traverse_limit_km,
+                      problem.seed if seed is None else seed)
+    if not problem.objectives:
+        raise ValueError("objectives must name at least one Performance field; got none")
+    for name in problem.objectives:
+        if name not in METRICS:
+            raise unknown("objectives: no Performance field", name, METRICS)
     if problem.traverse_limit_km is not None:
         scenario = dataclasses.replace(scenario, traverse_limit_km=problem.traverse_limit_km)
-    return scenario, Problem(objectives, constraints, problem.traverse_limit_km, problem.seed if seed is None else seed)
+    return scenario, problem
 
 
 def pareto_front(scenario: Scenario, *, population: int | None = None, generations: int | str = 60,
@@ -208,19 +203,14 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
         How many, 1 or more. "converged" stops when 20 generations add less than 1e-4 to the normalised hypervolume
         (objectives without a published scale are scaled by the front's own span), and the front is that of *all*
         designs evaluated: some hundreds or thousands.
-    seed : int, optional
-        Same seed, same bits. Default: the problem's; without one, each run differs.
-    objectives, constraints : optional
-        In place of the problem's, such as {"range_km": "max"} and [("slope_capability_deg", ">=", 15)].
-    model : Model
-        Scalars only.
+    seed, objectives, constraints : optional
+        In place of the problem's, such as {"range_km": "max"} and [("slope_capability_deg", ">=", 15)]. Same seed, same
+        bits; without one, each run differs.
     start : "light", Front or Design, optional
-        "light": half of the first generation has the least width, avionics and wheel count, and mostly little chassis,
-        array, battery and torque, where good designs lie. Designs join the first generation, filled up with random
-        ones; of more than `population` designs, that many from the lightest to the heaviest.
+        "light": half of the first generation lies where light designs do (`sampling.light_corner`). Designs join the
+        first generation, filled up with random ones; of more than `population`, that many from lightest to heaviest.
     on_generation : callable, optional
-        Called with a `Progress` after each generation; when it returns True the search stops and the front so far is
-        returned.
+        Called with a `Progress` after each generation; when it returns True the search stops with the front so far.
     bounds : dict of str to (float, float), optional
         Limits of some variables in place of those in DESIGN_SPACE.
 
@@ -229,8 +219,6 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
     Deb et al. (2002), doi:10.1109/4235.996017; Blank & Deb (2020), doi:10.1109/ACCESS.2020.2990567.
     """
     population, generations, until = budget(population, generations)
-    if seed is not None:
-        seed = int(check("seed", seed, 0, whole=True, scalar=True))
     scenario, problem = posed(scenario, objectives, constraints, seed)
     algorithm = nsga2(scenario, problem, population, generations, model=model, start=start, bounds=bounds)
     mission, history, misses, stopped = algorithm.problem, [], [], False
@@ -273,10 +261,10 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
             break
     front = so_far(f"stopped after generation {len(history)} of {generations}" if stopped else "")
     if not len(front):
-        words = ", ".join(f"{name} {sign} {limit:g}" for name, sign, limit in problem.constraints)
-        message = (f"no design of {len(history)} generations met the constraints {words}; {mission.nearest_miss}"
-                   if math.isfinite(mission.least) else
-                   f"no design of {len(history)} generations has a solution: the wheels are buried")
+        message = f"no design of {len(history)} generations has a solution: the wheels are buried"
+        if math.isfinite(mission.least):
+            words = ", ".join(f"{name} {sign} {limit:g}" for name, sign, limit in problem.constraints)
+            message = f"no design of {len(history)} generations met the constraints {words}; {mission.nearest_miss}"
         front = dataclasses.replace(front, message=message)
         if warn:
             warnings.warn(message, UserWarning, stacklevel=2)
@@ -303,9 +291,9 @@ def budget(population, generations):
     until = isinstance(generations, str) and generations == "converged"
     if isinstance(generations, str) and not until:
         raise ValueError(f"generations must be a whole number, at least 1, or 'converged'; got {generations!r}")
-    generations = MOST_GENERATIONS if until else int(check("generations", generations, 1, whole=True, scalar=True))
+    generations = MOST_GENERATIONS if until else whole("generations", generations, 1)
     population = (100 if until else 50) if population is None else population
-    return int(check("population", population, 4, whole=True, scalar=True)), generations, until
+    return whole("population", population, 4), generations, until
 
 
 def _first_generation(start, bounds):
@@ -343,9 +331,7 @@ def nsga2(scenario: Scenario, problem: Problem, population: int = 50, generation
     from pymoo.operators.survival.rank_and_crowding.metrics import get_crowding_function
     from pymoo.core.survival import Survival
     from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
-    require(model=(model, Model))
-    if model.shape:
-        raise ValueError(f"model must hold single numbers for a search; got arrays of shape {model.shape}")
+    single(model=model)
     Config.warnings["not_compiled"] = False
 
     class Mission(Pymoo):

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from . import catalog
-from ._fields import check, require, unknown
+from ._fields import check, generator, require, unknown, whole
 from .design import Model, Scenario
 
 DRAWS = 1024
@@ -21,8 +21,8 @@ def uncertain_inputs(scenario: Scenario, *, draws: int = DRAWS, seed: int = 0, m
     Same seed, same bits.
     """
     from scipy.stats import qmc
-    draws = int(check("draws", draws, 1, whole=True, scalar=True))
-    random = np.random.default_rng(seed)
+    draws = whole("draws", draws, 1)
+    random = generator(seed)
     names = uncertain_names(table)
     points = qmc.Sobol(max(len(names), 1), rng=random).random_base2(math.ceil(math.log2(draws)))[:draws]
     # the sequence's late columns are its worst: shuffled, no input always has them

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from . import catalog, power
-from ._fields import check, require, unknown
+from ._fields import check, generator, require, unknown, whole
 from .design import DESIGN_SPACE, Model, single
 from .mass import MassBreakdown, mass_breakdown
 from .mission import MASS_COEFFICIENTS, evaluate
@@ -143,8 +143,8 @@ def bootstrap_medians(reading_error_n: float = 0.5, reading_error_m: float = 1e-
     sigma = dict(zip(QUANTITIES, (check("reading_error_n", reading_error_n, 0, scalar=True),
                                   1000 * check("reading_error_m", reading_error_m, 0, scalar=True),
                                   check("reading_error_nm", reading_error_nm, 0, scalar=True))))
-    samples = int(check("samples", samples, 1, whole=True, scalar=True))
-    rng, rows = np.random.default_rng(seed), []
+    samples = whole("samples", samples, 1)
+    rng, rows = generator(seed), []
     for experiment, quantity, known in _measured(single_wheel(**options)):
         measured, model = (known[name].to_numpy() for name in (quantity, "model_" + quantity))
         error = abs(error_pct(model, measured + sigma[quantity] * rng.standard_normal((samples, len(measured)))))

@@ -46,6 +46,18 @@ def assert_buildable(designs, bounds=None):
     assert designs.grouser_count.dtype.kind == designs.wheel_count.dtype.kind == "i"
 
 
+@pytest.mark.parametrize("seed", [-1, 1.5, "one", True, [1, 2]])
+@pytest.mark.parametrize("call", [lambda seed: rdk.random_designs(2, seed=seed),
+                                  lambda seed: rdk.intervals(RASHID, MARE, draws=2, seed=seed),
+                                  lambda seed: rdk.pareto_front(MARE, population=4, generations=1, seed=seed),
+                                  lambda seed: rdk.fronts([MARE], seeds=[seed], population=4, generations=1),
+                                  lambda seed: rdk.validation.bootstrap_medians(seed=seed, samples=2),
+                                  lambda seed: rdk.terrain.synthetic(seed, cells=32)])
+def test_a_seed_is_a_whole_number_everywhere(call, seed):
+    with pytest.raises(ValueError, match="seeds? must be (a whole number, zero or more|one number)"):
+        call(seed)
+
+
 def test_random_designs_fill_the_space_and_follow_the_seed():
     designs = rdk.random_designs(2000, seed=1)
     assert_buildable(designs)
@@ -363,8 +375,8 @@ def test_a_speed_without_limit_stays_infinite_downhill():
     (dict(table=[row("shear_scale", 1, 2) | {"weight": 0}]), "weight of shear_scale must be positive"),
     (dict(table=[row("shear_scale", 2, 1)]), "low of shear_scale must be at most high"),
     (dict(table=[row("shear_scale", "some", 1)]), "low of shear_scale must be a number; got 'some'"),
-    (dict(model=rdk.Model(shear_scale=[1, 2])), r"single model; got shapes \(\), \(\) and \(2,\)"),
-    (dict(scenario=replace(MARE, slope_deg=[1, 2])), "single scenario")])
+    (dict(model=rdk.Model(shear_scale=[1, 2])), r"model must be a single one; got arrays of shape \(2,\)"),
+    (dict(scenario=replace(MARE, slope_deg=[1, 2])), "scenario must be a single one")])
 def test_bad_intervals_are_named(changed, words):
     with pytest.raises(ValueError, match=words):
         rdk.intervals(**(dict(design=RASHID, scenario=MARE, draws=5) | changed))

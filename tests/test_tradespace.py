@@ -488,14 +488,14 @@ def test_an_unreachable_constraint_gives_an_empty_front_that_says_by_how_much():
 
 @pytest.mark.parametrize("changed, error, words", [
     (dict(scenario="mare"), TypeError, r"scenario must be a Scenario, such as rdk.scenario\(.*\); got 'mare'"),
-    (dict(scenario=replace(MARE, slope_deg=[1, 2])), ValueError, "scenario must be a single mission"),
+    (dict(scenario=replace(MARE, slope_deg=[1, 2])), ValueError, "scenario must be a single one"),
     (dict(model=0.8), TypeError, r"model must be a Model, such as rdk.Model\(\); got float"),
-    (dict(model=rdk.Model(shear_scale=[0.7, 1])), ValueError, "model must hold single numbers"),
+    (dict(model=rdk.Model(shear_scale=[0.7, 1])), ValueError, "model must be a single one"),
     (dict(population=3), ValueError, "population must be a whole number, at least 4; got 3"),
     (dict(population=10.5), ValueError, "population"),
     (dict(generations=0), ValueError, "generations must be a whole number, at least 1; got 0"),
     (dict(generations="9"), ValueError, "generations"), (dict(generations=[3]), ValueError, "generations"),
-    (dict(seed=-1), ValueError, "seed must be a whole number, zero or more; got -1"),
+    (dict(seed=-1), ValueError, "seed must be a whole number, zero or more or None; got -1"),
     (dict(seed=1.5), ValueError, "seed"), (dict(seed=True), ValueError, "seed"),
     (dict(objectives={"speed": "max"}), ValueError, "no Performance field 'speed'; nearest are .*cruise_speed_m_s"),
     (dict(objectives={"zzz": "max"}), ValueError, "no Performance field 'zzz'; choose from range_km"),
@@ -705,7 +705,7 @@ def test_numpy_numbers_and_iterators_give_the_same_cases():
     (dict(shear_scales=[]), "shear_scales must not be empty"),
     (dict(obstacle_heights_m=[]), "obstacle_heights_m must not be empty"),
     (dict(scenarios=MARE), "scenarios must be a list of Scenario; got the single 'equatorial_mare_traverse'"),
-    (dict(seeds=[1, -2]), "seeds must be a whole number, zero or more; got -2"),
+    (dict(seeds=[1, -2]), "seeds must be a whole number, zero or more or None; got -2"),
     (dict(seeds=["a"]), "seeds"),
     (dict(shear_scales=[1.0, 0.0]), "shear_scales must be positive and finite; got 0.0"),
     (dict(obstacle_heights_m=[-0.1]), "obstacle_heights_m must be zero or more"),
@@ -718,5 +718,5 @@ def test_bad_arguments_of_a_study_are_named(changed, words):
 
 def test_an_error_in_a_worker_reaches_the_caller():
     many = replace(MARE, slope_deg=np.array([1.0, 2.0]))
-    with ThreadPoolExecutor(2) as pool, pytest.raises(ValueError, match="single mission"):
+    with ThreadPoolExecutor(2) as pool, pytest.raises(ValueError, match="scenario must be a single one"):
         rdk.fronts([many, MARE], population=4, generations=1, executor=pool)
