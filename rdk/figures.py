@@ -53,23 +53,12 @@ def curves(x, series, x_label="", y_label="", *, axes=None, legend=True):
 
 
 def live(draw, *, size=(5.2, 3.6), **sliders):
-    """A picture with sliders that is drawn anew when one moves; it runs without a browser too.
+    """A picture, `size` inches of 100 pixels, with sliders: drawn anew when one moves; it runs without a browser too.
 
-    Parameters
-    ----------
-    draw : callable
-        Takes an empty matplotlib Figure and one number a slider, by name; draws, and returns a sentence
-        that says what the picture shows. It may run in several threads, one at a time: no pyplot in it.
-    size : tuple of float
-        Width and height of the picture in inches of 100 pixels.
-    **sliders : tuple
-        Name -> (low, high, step, start, label with unit).
-
-    Returns
-    -------
-    ipywidgets.HBox
-        Its `sliders` is a dictionary of the sliders by name; `picture` the HTML image with the sentence as
-        its alternative text. Where there are no widgets the picture stands alone.
+    `draw` takes an empty matplotlib Figure and one number a slider, by name; it draws, and returns a sentence that says
+    what the picture shows. It may run in several threads, one at a time: no pyplot in it. A slider is name=(low, high,
+    step, start, label with unit). Returns an ipywidgets.HBox: `sliders` has the sliders by name, `picture` is the image
+    with the sentence as its alternative text. Where there are no widgets the picture stands alone.
     """
     import ipywidgets as widgets
 

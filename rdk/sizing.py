@@ -93,6 +93,16 @@ class _Search:
 
         return np.array([abs(demand.limit) or spread(demand.field) or 1.0 for demand in self.demands])
 
+    @cached_property
+    def flags(self):
+        """Which demands are on a field that is true or false."""
+        return np.array([Performance.__annotations__[demand.field] is bool for demand in self.demands], bool)
+
+    def slacks(self, found):
+        """How far inside its limit each demand is, in units of its scale: (demands, ...)."""
+        slacks = [demand.slack(found) / scale for demand, scale in zip(self.demands, self.scales)]
+        return np.reshape(slacks, (len(slacks), *found.shape))
+
     def first(self, random, known=None):
         """First generations: half in the light corner, half anywhere; one population a wheel count."""
         genes, corner = random.random((2, POPULATION, len(VARIABLES))), POPULATION // 2
@@ -107,26 +117,21 @@ class _Search:
         """Objective and summed relative shortfall of genes (populations, designs, 11) at the nominal values."""
         found = evaluate(decode(genes.reshape(-1, genes.shape[2]), self.bounds), self.scenario, model=self.model)
         objective = np.array(getattr(found, self.minimise), float)
-        violation = np.zeros(objective.shape)
-        for demand, scale in zip(self.demands, self.scales):
-            violation += np.clip(-demand.slack(found) / scale, 0, WORST)
+        violation = np.clip(-self.slacks(found), 0, WORST).sum(0)
         failed = found.buried | ~np.isfinite(objective)  # a lane without a solution
         return tuple(np.where(failed, np.inf, x).reshape(genes.shape[:2]) for x in (objective, violation))
 
     def margins(self, genes, changes):
-        """How far inside its limit each demand is, in units of it: (draws, designs, demands). Flags: inf or -1."""
+        """The slacks of designs in draws of the inputs, flags as inf or -1: (demands, draws, designs)."""
         designs, draws = decode(genes, self.bounds), len(next(iter(changes.values())))
-        margins = np.empty((draws, len(genes), len(self.demands)))
+        margins = np.empty((len(self.demands), draws, len(genes)))
         step = max(LANES // max(len(genes), 1), 1)       # bounded memory
         for start in range(0, draws, step):
             part = {name: value[start:start + step, None] for name, value in changes.items()}
             *drawn, model = replaced(designs, self.scenario, self.model, part)
             found = evaluate(*drawn, model=model)
-            for i, (demand, scale) in enumerate(zip(self.demands, self.scales)):
-                margin = np.where(found.buried, -np.inf, demand.slack(found) / scale)
-                flag = getattr(found, demand.field).dtype == bool
-                margins[start:start + step, :, i] = np.where(flag & (margin >= 0), np.inf, margin)
-        return margins
+            margins[:, start:start + step] = np.where(found.buried, -np.inf, self.slacks(found))
+        return np.where(self.flags[:, None, None] & (margins >= 0), np.inf, margins)
 
     def draws(self, count, seed):
         """The uncertain inputs, one value a draw: the same for all designs."""
@@ -160,7 +165,8 @@ class _Search:
         confidence = self.confidence + margin * (1 - self.confidence)
         allowed = min(math.floor((1 - confidence) * draws + 1e-9), draws - 1)        # draws that may fail
         genes, changes, lanes = genes[:, :designs], self.draws(draws, self.seed), 0
-        hardest = np.argsort(self.margins(genes[0, :ELITE], changes).min((1, 2), initial=np.inf), kind="stable")
+        # a look at the hardest draws comes first
+        hardest = np.argsort(self.margins(genes[0, :ELITE], changes).min((0, 2), initial=np.inf), kind="stable")
         look = max(draws // FIRST_LOOK, allowed + 1)
         first, rest = ({name: value[part] for name, value in changes.items()}
                        for part in (hardest[:look], hardest[look:]))
@@ -171,10 +177,10 @@ class _Search:
             # who cannot replace the parent need not be drawn
             open_ = (short < violation) | (short == violation) & (new < objective)
             asked, added = trials[open_], np.full(np.count_nonzero(open_), np.inf)
-            worst = self.margins(asked, first).min(2, initial=np.inf)
+            worst = self.margins(asked, first).min(0, initial=np.inf)
             # of a parent that holds, one failing draw too many settles it
             stays = ((worst < 0).sum(0) <= allowed) | np.broadcast_to(violation != 0, short.shape)[open_]
-            more = self.margins(asked[stays], rest).min(2, initial=np.inf)
+            more = self.margins(asked[stays], rest).min(0, initial=np.inf)
             lanes += worst.size + more.size
             worst = np.concatenate([worst[:, stays], more])
             failing, decides = (worst < 0).sum(0), np.partition(worst, allowed, axis=0)[allowed]
@@ -226,15 +232,15 @@ class Sizing(Shown):
 
     @cached_property
     def _holds(self):
-        """Whether each demand (across) holds in each fresh draw (down)."""
+        """Whether each demand (down) holds in each fresh draw (across)."""
         search = self.search
         changes = search.draws(FRESH_DRAWS, search.seed + FRESH_SEED)
-        return search.margins(encode(self.design, search.bounds), changes)[:, 0] >= 0
+        return search.margins(encode(self.design, search.bounds), changes)[..., 0] >= 0
 
     @property
     def odds(self) -> float:
         """Share of 20,480 fresh draws of the uncertain inputs in which all demands hold."""
-        return float(self._holds.all(1).mean())
+        return float(self._holds.all(0).mean())
 
     @property
     def demands(self):
@@ -244,7 +250,7 @@ class Sizing(Shown):
         frame = pd.DataFrame({"demand": list(map(str, asked)),
                               "value": [float(getattr(self.performance, demand.field)) for demand in asked],
                               "slack": [float(demand.slack(self.performance)) for demand in asked],
-                              "share": self._holds.mean(0)})
+                              "share": self._holds.mean(1)})
         object.__setattr__(frame, "prices", self.prices)             # reads well: sizing.demands.prices()
         return frame
 
@@ -279,16 +285,13 @@ class Sizing(Shown):
         nearby = np.clip(np.concatenate([gene + np.diag(steps), gene - np.diag(steps)]), 0, 1)
         moved = evaluate(decode(nearby, search.bounds), search.scenario, model=search.model)
         change = np.asarray(getattr(moved, search.minimise), float) - getattr(here, search.minimise)
-        breaks, names = np.zeros(len(nearby), bool), {}
-        for demand, scale in zip(search.demands, search.scales):
-            slack, after = demand.slack(here), demand.slack(moved)
-            flag = isinstance(getattr(here, demand.field), bool)
-            if slack < 0 or np.any((after < 0) & (change < 0)) if flag else slack <= TIGHT * scale:
-                names[demand.field] = None
-                breaks |= after < slack - 1e-9 * scale
+        slack, after = search.slacks(here), search.slacks(moved)
+        turns = (slack < 0) | ((after < 0) & (change < 0)).any(1)
+        tight = np.where(search.flags, turns, slack <= TIGHT)
+        breaks = (after < slack[:, None] - 1e-9)[tight].any(0)
         hurts = (breaks | (change > 1e-9)).reshape(2, -1)
-        low, high = gene < 0.001, gene > 0.999
-        held = (low & hurts[0] | high & hurts[1]) & (np.arange(len(gene)) != WHEELS)
+        held = ((gene < 0.001) & hurts[0] | (gene > 0.999) & hurts[1]) & (np.arange(len(gene)) != WHEELS)
+        names = dict.fromkeys(demand.field for demand, holds in zip(search.demands, tight) if holds)
         return (*names, *np.array(VARIABLES)[held].tolist())
 
     def _summary(self):
@@ -379,13 +382,12 @@ def _conflict(found):
         frame = found.demands
         weakest = frame.loc[frame["share"].idxmin()]
         best = search.margins(found.population[:1], search.draws(FRESH_DRAWS, search.seed + FRESH_SEED))
-        best = max(found.odds, (best >= 0).all(2).mean())
+        best = max(found.odds, (best >= 0).all(0).mean())
         return (f"a confidence of {search.confidence:g} is not reachable: the search found no design with a joint "
                 f"share above {best:.3f}. The nearest miss, the lightest within {NEARLY} of it, fails most often: "
                 f"{weakest['demand']}, which holds in {weakest['share']:.3f} of the draws")
     by = ", ".join(f"{demand.field} by {-demand.slack(performance):.3g}" for demand in missed)
-    tight = [demand for demand, scale in zip(search.demands, search.scales)
-             if demand.slack(performance) <= 10 * TIGHT * scale]
+    tight = [demand for demand, slack in zip(search.demands, search.slacks(performance)) if slack <= 10 * TIGHT]
     conflict = tight if len(tight) < len(search.demands) and not search.met(tight) else list(search.demands)
     for demand in [d for d in conflict if d not in missed] + missed:
         rest = [other for other in conflict if other is not demand]

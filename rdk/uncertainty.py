@@ -6,8 +6,8 @@ import math
 import numpy as np
 
 from . import catalog
-from ._fields import check, generator, require, unknown, whole
-from .design import Model, Scenario
+from ._fields import check, generator, unknown, whole
+from .design import Model, Scenario, single
 
 DRAWS = 1024
 """Draws of an interval by default: the share beyond its ends then hardly depends on the seed."""
@@ -31,7 +31,10 @@ def uncertain_inputs(scenario: Scenario, *, draws: int = DRAWS, seed: int = 0, m
 
 def uncertain_names(table: list | None = None) -> list[str]:
     """The inputs that a table of uncertainties names, in order."""
-    return list(dict.fromkeys(row["name"] for row in (catalog.rows("uncertainties.csv") if table is None else table)))
+    table = catalog.rows("uncertainties.csv") if table is None else table
+    if not isinstance(table, (list, tuple)) or not all(isinstance(row, dict) and "name" in row for row in table):
+        raise ValueError(f"table must be a list of rows, each a dictionary with a name; got {table!r:.80}")
+    return list(dict.fromkeys(row["name"] for row in table))
 
 
 def inputs_at(points: np.ndarray, scenario: Scenario, *, model: Model = Model(), table: list | None = None) -> dict:
@@ -48,10 +51,12 @@ def inputs_at(points: np.ndarray, scenario: Scenario, *, model: Model = Model(),
         shares `weight`; a row counts only `when` its condition holds, "from=35" or "below=35" of the nominal value, or
         "kernel=paper" of the model.
     """
-    require(scenario=(scenario, Scenario), model=(model, Model))
-    nominal, changes = {**model.numbers(), **scenario.soil.numbers()}, {}
+    single(scenario=scenario, model=model)
+    nominal, changes, names = {**model.numbers(), **scenario.soil.numbers()}, {}, uncertain_names(table)
     table = catalog.rows("uncertainties.csv") if table is None else table
-    for name, u in zip(uncertain_names(table), np.asarray(points, float).T):
+    if np.shape(points)[1:] != (len(names),) and names:
+        raise ValueError(f"points must have one column for each of {', '.join(names)}; got shape {np.shape(points)}")
+    for name, u in zip(names, np.asarray(points, float).T):
         if name not in nominal:
             raise unknown("table: Soil and Model have no field", name, list(nominal))
         rows = [row for row in table if row["name"] == name and _counts(row, nominal[name], model)]

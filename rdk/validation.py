@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from . import catalog, power
-from ._fields import check, generator, require, unknown, whole
+from ._fields import check, require, unknown
 from .design import DESIGN_SPACE, Model, single
 from .mass import MassBreakdown, mass_breakdown
 from .mission import MASS_COEFFICIENTS, evaluate
@@ -79,8 +79,8 @@ def _stem(quantity):
     return quantity.rpartition("_")[0]
 
 
-def _measured(points):
-    """Experiment, quantity and the points at which it was measured."""
+def measured(points: pd.DataFrame):
+    """Yield experiment, quantity and the points of a `single_wheel` table at which it was measured."""
     for experiment, group in points.groupby("experiment", sort=False):
         for quantity in QUANTITIES:
             known = group[group[_stem(quantity) + "_error_pct"].notna()]
@@ -92,16 +92,13 @@ def single_wheel_summary(points: pd.DataFrame | None = None, **options) -> pd.Da
     """What the errors of the single-wheel tests, as returned by `single_wheel`, come to, per experiment and quantity.
 
     The paper's medians are those of |error| in percent over all points of an experiment, both wheels together, the
-    points at zero slip and of negative pull included: that choice reproduces its six figures.
-
-    One row an experiment and quantity: points with an error, median_abs_error_pct, median_error_pct (signed),
-    over_predicted (how many points), largest_abs_error_pct, median_abs_error and its unit, and
-    median_abs_error_of_load_pct (pull only: error in percent of the load).
+    points at zero slip and of negative pull included: that choice reproduces its six figures. `over_predicted` counts
+    points; `median_abs_error_of_load_pct` is of pull only, in percent of the load.
     """
     points = single_wheel(**options) if points is None else points
     require(points=(points, pd.DataFrame))
     rows = []
-    for experiment, quantity, known in _measured(points):
+    for experiment, quantity, known in measured(points):
         error, unit = known[_stem(quantity) + "_error_pct"], QUANTITIES[quantity]
         residual = known["model_" + quantity] - known[quantity]
         of_load = (100 * residual / known.vertical_load_n).abs().median() if unit == "N" else np.nan
@@ -114,11 +111,7 @@ def single_wheel_summary(points: pd.DataFrame | None = None, **options) -> pd.Da
 
 
 def single_wheel_curves(slip, **options) -> pd.DataFrame:
-    """The kernel's curves through the single-wheel tests, at slips of shape (n,), with options of `wheel_forces`.
-
-    Returns one row a test (experiment and wheel) and slip: experiment, wheel, soil, slip, model_drawbar_pull_n,
-    model_sinkage_mm, model_torque_nm.
-    """
+    """The kernel's curves through the single-wheel tests, one row a test and slip (n,), as in `single_wheel`."""
     tests = catalog.table("single_wheel.csv").drop_duplicates(["experiment", "wheel"])
     slip = np.atleast_1d(check("slip", slip, -1, 1))
     lanes = tests.loc[tests.index.repeat(len(slip))].assign(slip=np.tile(slip, len(tests))).reset_index(drop=True)
@@ -126,52 +119,11 @@ def single_wheel_curves(slip, **options) -> pd.DataFrame:
     return single_wheel(lanes, **options)[columns]
 
 
-def bootstrap_medians(reading_error_n: float = 0.5, reading_error_m: float = 1e-3, reading_error_nm: float = 0.1, *,
-                      resample_points: bool = False, samples: int = 2000, seed: int | None = 0,
-                      **options) -> pd.DataFrame:
-    """What an error in reading the points off printed figures does to the medians of |error|.
-
-    Every measured value is read again `samples` times with a normal error of the standard deviations given, zero or
-    more; the model stays as it is. That is a parametric bootstrap. With `resample_points`, each sample also draws what
-    was measured: curves (a wheel each) of an experiment with replacement, and points of a drawn curve with replacement,
-    since points of one curve share its wheel and its soil. An experiment of one or two curves shows little of what
-    others would have given.
-
-    One row an experiment and quantity: points, median_abs_error_pct as printed, and low_pct, median_pct, high_pct: the
-    5, 50 and 95 % points of that median over the samples.
-    """
-    sigma = dict(zip(QUANTITIES, (check("reading_error_n", reading_error_n, 0, scalar=True),
-                                  1000 * check("reading_error_m", reading_error_m, 0, scalar=True),
-                                  check("reading_error_nm", reading_error_nm, 0, scalar=True))))
-    samples = whole("samples", samples, 1)
-    rng, rows = generator(seed), []
-    for experiment, quantity, known in _measured(single_wheel(**options)):
-        measured, model = (known[name].to_numpy() for name in (quantity, "model_" + quantity))
-        error = abs(error_pct(model, measured + sigma[quantity] * rng.standard_normal((samples, len(measured)))))
-        if resample_points:
-            error = np.take_along_axis(error, drawn(known.wheel.to_numpy(), samples, rng), 1)
-        low, median, high = np.nanpercentile(np.nanmedian(error, 1), [5, 50, 95])
-        rows.append(dict(experiment=experiment, quantity=_stem(quantity), points=len(measured),
-                         median_abs_error_pct=np.median(abs(error_pct(model, measured))), low_pct=low,
-                         median_pct=median, high_pct=high))
-    return pd.DataFrame(rows)
-
-
-def drawn(curve, samples, rng):
-    """Numbers of points, (samples, points): curves drawn with replacement, then points of the curve drawn."""
-    curves = [np.flatnonzero(curve == name) for name in dict.fromkeys(curve)]
-    size = max(map(len, curves))
-    picked = rng.integers(len(curves), size=(samples, len(curves)))
-    members, length = np.array([np.resize(one, size) for one in curves]), np.array([len(one) for one in curves])
-    within = (rng.random((samples, len(curves), size)) * length[picked][..., None]).astype(int)
-    return members[picked[..., None], within].reshape(samples, -1)
-
-
 def pull_shift(shear_scale=(0.70, 0.85, 1.15, 1.30), **options) -> pd.DataFrame:
     """How far the pull of the tested wheels moves when the kernel's shear stress is scaled by factors of shape (n,).
 
     Taken over the points of the paper's three experiments with positive slip and positive nominal pull, as its
-    robustness study does. Returns one row a factor: shear_scale, median_shift_pct (of |DP(scale) / DP - 1|), points.
+    robustness study does: `median_shift_pct` is that of |DP(scale) / DP - 1|.
     """
     scale = np.atleast_1d(check("shear_scale", shear_scale, above=0))
     points = catalog.table("single_wheel.csv")
@@ -223,11 +175,9 @@ def published_masses(model: Model = Model()) -> pd.DataFrame:
 
 
 def published_masses_summary(masses: pd.DataFrame | None = None) -> pd.DataFrame:
-    """Median and mean |error| of the predicted masses, as returned by `published_masses`.
+    """Errors of the predicted masses, as returned by `published_masses`: "in class" (5 to 50 kg) and "all".
 
-    Returns the rows "in class" (5 to 50 kg, the paper's figures) and "all": rovers, median_abs_error_pct,
-    mean_abs_error_pct, mean_error_pct (signed), largest_abs_error_pct, and rank_correlation of signed error with
-    published mass.
+    `rank_correlation` is that of the signed error with the published mass.
     """
     masses = published_masses() if masses is None else masses
     require(masses=(masses, pd.DataFrame))
@@ -258,14 +208,11 @@ def peak_solar_power_w(panel_area_m2, latitude_deg, cell_efficiency=None, clean_
 def flown_rovers() -> pd.DataFrame:
     """Peak solar power, survival of the lunar night and range envelope of the rovers that flew, against record.
 
-    The panel lies flat. Power is given with and without the optical loss of a clean array: the paper counts it for
-    Pragyan and leaves it out for Yutu-2. The enclosure (area, absorptivity, heaters, limits) is that of `flown.csv`,
-    largely imputed. The range stops at the scenario's traverse limit; `unlimited_range_km` lifts that limit.
-
-    One row a rover: rover; published_peak_w with its band published_low_w, published_high_w; peak_w (no optical loss),
-    clean_peak_w and its sweep over cell efficiency, clean_peak_low_w and clean_peak_high_w; clean_error_pct;
-    implied_derate (published / peak_w); hot_temperature_c, cold_temperature_c, survives (model), survived (record);
-    range_m, published_traverse_m, unlimited_range_km.
+    The panel lies flat. Power is given without (`peak_w`) and with (`clean_peak_w`, its sweep over cell efficiency in
+    `clean_peak_low_w` and `clean_peak_high_w`) the optical loss of a clean array: the paper counts it for Pragyan and
+    leaves it out for Yutu-2. `implied_derate` is published over `peak_w`. The enclosure (area, absorptivity, heaters,
+    limits) is that of `flown.csv`, largely imputed. The range stops at the scenario's traverse limit, the
+    `unlimited_range_km` does not. `survives` is the model's word, `survived` that of the record.
     """
     flown = catalog.table("flown.csv")
     rows = []

@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import rdk  # noqa: E402
 import drawings as plots  # noqa: E402
 from rdk import terramechanics, validation  # noqa: E402
+from wheel_doubts import bootstrap_medians  # noqa: E402
 
 WHEEL, SOIL = rdk.Wheel(0.10, 0.08, 0.015, 14), rdk.soil("apollo-nominal")
 RASHID, MARE = rdk.rover("Rashid-1"), rdk.scenario("equatorial_mare_traverse")
@@ -131,7 +132,7 @@ def test_errors_are_signed_and_in_the_units_of_the_axes():
 
 
 def test_median_spread_puts_each_row_beside_its_name():
-    table = validation.bootstrap_medians(samples=50)
+    table = bootstrap_medians(samples=50)
     axes = plots.median_spread({"a": table, "b": table.assign(low_pct=table.low_pct / 2)}).axes[0]
     names = [text.get_text() for text in axes.get_yticklabels()]
     assert names[0] == "Ding 2011, drawbar pull" and "Wang & Han 2016, torque" in names

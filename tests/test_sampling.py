@@ -16,7 +16,7 @@ import rdk
 from rdk import catalog, sampling
 from rdk.uncertainty import inputs_at, uncertain_inputs, uncertain_names
 from rdk.validation import single_wheel
-from wheel_coverage import interval_coverage
+from wheel_doubts import interval_coverage
 
 MARE = rdk.scenario("equatorial_mare_traverse")
 RASHID, TENACIOUS = rdk.rover("Rashid-1"), rdk.rover("Tenacious")
@@ -367,7 +367,8 @@ def test_a_speed_without_limit_stays_infinite_downhill():
     (dict(draws=0), "draws must be a whole number, at least 1; got 0"), (dict(draws=2.5), "draws"),
     (dict(level=0), "level must be above 0 and below 1"), (dict(level=1), "level"),
     (dict(level=math.nan), "level"),
-    (dict(table=[]), "table must hold at least one row"),
+    (dict(table=[]), "table must hold at least one row"), (dict(seed=-1), "seed must be a whole number"),
+    (dict(table="shear_scale"), "table must be a list of rows, each a dictionary with a name; got 'shear_scale'"),
     (dict(table=[row("albedo", 0.9, 1.1)]), "Soil and Model have no field 'albedo'"),
     (dict(table=[row("shear_scale", 0.9, 1.1, kind="percent")]), "shear_scale must be a factor, offset or value"),
     (dict(table=[row("shear_scale", 0.9, 1.1, distribution="beta")]), "got 'factor', 'beta'"),
@@ -499,6 +500,10 @@ def test_draws_follow_the_seed_and_fill_every_input_evenly():
     for name, values in drawn.items():
         np.testing.assert_array_equal(values, again[name])
         assert (values != other[name]).any() and values.shape == (1024,)
+    with pytest.raises(ValueError, match="one column for each of shear_scale, .*; got shape .3, 2."):
+        inputs_at(np.zeros((3, 2)), MARE)
+    with pytest.raises(ValueError, match="scenario must be a single one"):
+        uncertain_inputs(replace(MARE, soil=replace(MARE.soil, cohesion_kpa=[1, 2])))
     one = uncertain_inputs(MARE, draws=1)
     assert all(value.shape == (1,) for value in one.values())
     modulus = np.sort(drawn["frictional_modulus_kn_m_n2"]) / MARE.soil.frictional_modulus_kn_m_n2

@@ -13,6 +13,7 @@ import scalar_transcription as scalar
 from rdk import catalog, validation
 from ledger import accepts
 from rdk import validation as wheels
+from wheel_doubts import bootstrap_medians, drawn as picked
 
 TARGETS = catalog.table("paper_targets.csv").set_index("id")
 
@@ -39,7 +40,7 @@ def test_one_call_of_the_kernel_solves_every_point(monkeypatch):
     monkeypatch.setattr(wheels, "wheel_forces", counted)
     table = validation.single_wheel()
     assert calls == [(len(table),)] and len(table) == len(catalog.rows("single_wheel.csv")) > 26
-    validation.bootstrap_medians(samples=3)              # reading errors move the measurements, not the model
+    bootstrap_medians(samples=3)              # reading errors move the measurements, not the model
     assert len(calls) == 2
 
 
@@ -94,11 +95,11 @@ def test_curves_pass_through_the_points(points):
 
 
 def test_bootstrap_is_seeded_and_vanishes_with_the_reading_error():
-    table = validation.bootstrap_medians(samples=200, seed=3)
-    pd.testing.assert_frame_equal(table, validation.bootstrap_medians(samples=200, seed=3))
-    assert not table.equals(validation.bootstrap_medians(samples=200, seed=4))
+    table = bootstrap_medians(samples=200, seed=3)
+    pd.testing.assert_frame_equal(table, bootstrap_medians(samples=200, seed=3))
+    assert not table.equals(bootstrap_medians(samples=200, seed=4))
     assert (table.low_pct < table.high_pct).all()
-    still = validation.bootstrap_medians(0, 0, 0, samples=5)
+    still = bootstrap_medians(0, 0, 0, samples=5)
     for column in "low_pct", "median_pct", "high_pct":
         # a percentile of equal numbers, interpolated
         assert_allclose(still[column], still.median_abs_error_pct, rtol=1e-12)
@@ -106,7 +107,7 @@ def test_bootstrap_is_seeded_and_vanishes_with_the_reading_error():
 
 def test_bootstrap_against_a_loop_written_out():
     """One experiment again, sample by sample with Python's own arithmetic and another random stream."""
-    table = validation.bootstrap_medians(samples=4000, seed=1).set_index(["experiment", "quantity"])
+    table = bootstrap_medians(samples=4000, seed=1).set_index(["experiment", "quantity"])
     group = validation.single_wheel().query("experiment == 'hurrell-2025'")
     rng, medians = np.random.default_rng(99), []
     for _ in range(4000):
@@ -115,13 +116,13 @@ def test_bootstrap_against_a_loop_written_out():
     row = table.loc[("hurrell-2025", "drawbar_pull")]
     # percentiles of two samples of 4,000 with a spread of about a fifth: well below 3 %
     assert_allclose([row.low_pct, row.high_pct], np.percentile(medians, [5, 95]), rtol=0.04)
-    wider = validation.bootstrap_medians(resample_points=True).set_index(["experiment", "quantity"])
+    wider = bootstrap_medians(resample_points=True).set_index(["experiment", "quantity"])
     assert (wider.high_pct - wider.low_pct > table.high_pct - table.low_pct).all()
 
 
 def test_points_of_a_curve_are_drawn_with_their_curve():
     curve = np.array(["a"] * 3 + ["b"] * 2)
-    drawn = validation.drawn(curve, 4000, np.random.default_rng(5))
+    drawn = picked(curve, 4000, np.random.default_rng(5))
     halves = curve[drawn].reshape(4000, 2, 3)
     assert np.all(halves == halves[..., :1]), "three points of one curve, then three of one curve"
     # a share of 0.5 over 8,000 draws: 0.6 % standard error
@@ -142,7 +143,7 @@ def test_the_imposed_arc_halves_the_error_of_sinkage_and_not_that_of_pull():
     paper_s = validation.single_wheel_summary().set_index(["experiment", "quantity"])
     assert paper_s.median_abs_error_pct["ding-2011", "sinkage"] > 2 * sinkage["ding-2011"]
     curves = validation.single_wheel_curves([0.2], kernel="imposed-arc")
-    wider = validation.bootstrap_medians(0, 0, 0, samples=2, kernel="imposed-arc")
+    wider = bootstrap_medians(0, 0, 0, samples=2, kernel="imposed-arc")
     assert np.allclose(wider.median_pct, summary.median_abs_error_pct) and curves.notna().all(axis=None)
 
 
@@ -171,7 +172,7 @@ def test_further_wheel_tests_bring_their_soil():
                                      dict(samples=1.5)])
 def test_bootstrap_refuses_nonsense(options):
     with pytest.raises(ValueError, match=next(iter(options))):
-        validation.bootstrap_medians(**options)
+        bootstrap_medians(**options)
 
 
 def test_pull_shift_is_that_of_the_paper_and_none_at_scale_one():

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from rdk import catalog, terramechanics, validation
+from wheel_doubts import bootstrap_medians
 from rdk.mission import evaluate
 
 from .judging import Exercise
@@ -211,7 +212,7 @@ def _factor_of_shift(shift_pct, low, high):
 @cache
 def _reading_interval(reading_error_n):
     """5 % and 95 % point of Ding's median pull error, in percent."""
-    row = validation.bootstrap_medians(reading_error_n, 0.0, 0.0).iloc[0]
+    row = bootstrap_medians(reading_error_n, 0.0, 0.0).iloc[0]
     return row.low_pct, row.high_pct
 
 
