@@ -60,8 +60,8 @@ def single_wheel(points: pd.DataFrame | None = None, **options) -> pd.DataFrame:
     """Model against measurement at every point of the single-wheel tests, with the options of `wheel_forces`.
 
     One row a point: experiment, wheel, soil, vertical_load_n, slip, and for each of drawbar_pull_n, sinkage_mm and
-    torque_nm the measured value, the model's (`model_...`) and the signed error in percent (`..._error_pct`; NaN where
-    nothing, or zero, was measured).
+    torque_nm the measured value, the model's (such as `model_drawbar_pull_n`) and the signed error in percent (such as
+    `sinkage_error_pct`; NaN where nothing, or zero, was measured).
     """
     points = catalog.table("single_wheel.csv") if points is None else points
     forces = wheel_forces(*single_wheel_conditions(points), **options)
