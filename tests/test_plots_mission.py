@@ -210,3 +210,10 @@ def test_rovers_side_by_side_are_on_one_scale_and_have_words():
     assert radius == [0.1, 0.1, 0.15, 0.15]              # in metres
     assert len(set(re.findall(r"scale\(([\d.]+) -", drawn.data))) == 1
     assert re.search("small: .* 100 mm radius.* large: .*Marked: hubs too weak", repr(drawn))
+
+
+def test_rovers_side_by_side_stand_three_a_row_on_level_ground_without_a_mission():
+    rovers = {name: (rdk.rover(name), None) for name in rdk.rover_names()}
+    places = re.findall(r'translate\((\d+) ([\d.]+)\)"><text class="b"', plots.rovers(rovers, None).data)
+    assert [int(x) for x, _ in places] == 2 * [0, 276, 552]
+    assert len({y for _, y in places[:3]}) == len({y for _, y in places[3:]}) == 1 and float(places[3][1]) > 100
