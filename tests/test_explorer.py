@@ -702,9 +702,9 @@ def test_two_explorers_do_not_disturb_each_other(explorer):
 
 def test_a_random_walk_keeps_working_and_keeps_no_memory(explorer):
     chance = random.Random(1)
-    names = [*DESIGN, *MISSION, *SOIL, "minimum_range_km", "maximum_mass_kg", "hub_no_load_speed_rad_s"]
-    menus = ["rover", "mission", "soil", "wheel_count", "why_metric", "sweep_first", "sweep_second", "sweep_metric",
-             "baseline", "survive"]
+    names = [name for name in NUMBERS if name not in ("population", "generations", "seed")]
+    menus = [name for name in explorer.menus if name not in ("view", "live")]
+    texts = ["12", "0,5", "1e3", "1e999", "none", "wide", "", "-4", "−3", "<b>", "nan", "2026-11-26T12:00"]
 
     def walk(moves, views):
         for _ in range(moves):
@@ -713,8 +713,12 @@ def test_a_random_walk_keeps_working_and_keeps_no_memory(explorer):
                 name = chance.choice(menus)
                 event = ["choose", name, str(chance.choice(list(explorer.menus[name])))]
             elif kind < 0.35:
-                event = ["do", chance.choice(["undo", "redo", "reset", "pin", "unpin:0", "use:0", "differences",
-                                              "python", "solve"])]
+                event = ["do", chance.choice(["undo", "redo", "reset", "reset:slope_deg", "pin", "unpin:0", "use:2",
+                                              "differences", "python", "solve", "point:1", "save:design.csv"])]
+            elif kind < 0.45:
+                event = ["type", chance.choice([*names, "start_utc"]), chance.choice(texts)]
+            elif kind < 0.48:
+                event = ["size", chance.choice([300, 640, 1400]), 420]
             else:
                 name = chance.choice(names)
                 event = ["slide", name, chance.randrange(NUMBERS[name].positions + 1)]
@@ -723,7 +727,7 @@ def test_a_random_walk_keeps_working_and_keeps_no_memory(explorer):
                 assert_current(explorer)
         assert_current(explorer)
 
-    walk(50, ["log", "mass", "wheel", "fleet", "why", "sweep"])
+    walk(60, list(VIEWS))
     explorer._past.clear()
     tracemalloc.start()                                  # slows the walk down: only for its end
     try:
@@ -1098,6 +1102,13 @@ def test_a_sweep_draws_a_cliff_as_one(explorer):
     points = np.array(re.findall(r"[ML]([\d.]+) ([\d.]+)", line), float)
     steepest = np.abs(np.diff(points[:, 1])).argmax()
     assert np.diff(points[steepest:steepest + 2, 0]) < 2 and "cannot drive" in explorer._picture
+
+
+@pytest.mark.parametrize("second", ["", "slope_deg"])
+def test_a_sweep_marks_a_design_without_a_limit_at_the_end(explorer, second):
+    explorer.set(view="sweep", sweep_first="maximum_speed_m_s", sweep_second=second, maximum_speed_m_s=np.inf)
+    explorer.settle()
+    sound(explorer._picture)
 
 
 def test_styles_and_script_are_whole():

@@ -165,14 +165,19 @@ def swept_over(now):
     return {name: span_of(name, MAP if len(names) == 2 else CURVE) for name in names}
 
 
-def band_of(a):
-    """The 90 % interval along a sweep over one field: what it is of, and (values, low, high)."""
+def band_of(a, stop):
+    """The 90 % interval along a sweep: what it is of, and (values, low, high); the old one at a `stop`."""
     name, metric = of = a.now["sweep_first"], a.now["sweep_metric"]
     knots = span_of(name, CURVE)[::5]
     draws = {n: v[:BAND_DRAWS, None] for n, v in uncertain_inputs(a.scenario, draws=DRAWS, model=a.model).items()}
-    *changed, model = replaced(a.design, a.scenario, a.model, draws | {name: knots})
-    values = np.asarray(getattr(evaluate(*changed, model=model), metric), float)
-    return of, (knots * NUMBERS[name].factor, *np.quantile(np.nan_to_num(values), [0.05, 0.95], axis=0))
+    ends = []
+    for some in np.array_split(knots, 4):
+        if stop():
+            return a.band
+        *changed, model = replaced(a.design, a.scenario, a.model, draws | {name: some})
+        values = np.asarray(getattr(evaluate(*changed, model=model), metric), float)
+        ends.append(np.quantile(np.nan_to_num(values), [0.05, 0.95], axis=0))
+    return of, (knots * NUMBERS[name].factor, *np.concatenate(ends, axis=1))
 
 
 def swept(a, size):
@@ -181,7 +186,7 @@ def swept(a, size):
     fields = {name: NUMBERS[name] for name in over}
     now = {**a.design.numbers(), **a.scenario.numbers(), **a.scenario.soil.numbers(), **a.model.numbers()}
     axes = [f.label + (f" ({f.unit})" if f.unit else "") for f in fields.values()]
-    here = [now[name] * f.factor for name, f in fields.items()]
+    here = [min(now[name], f.high) * f.factor for name, f in fields.items()]           # no limit: at the end
 
     def found(over):
         p = sweep(a.design, a.scenario, over, model=a.model).performance

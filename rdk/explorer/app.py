@@ -31,6 +31,7 @@ from .worker import Refresher
 
 LIVE = 40, 24                                            # population and generations of a live front from nothing
 SLOW = "why", "sweep", "optimise"                        # views whose picture may come after the readings
+YIELD_S = 0.01                                           # for an answer to leave before its intervals are computed
 WIDE = 1000                                              # pixels from which a second picture stands beside the first
 RATED = 8                                                # designs whose odds are computed between two looks for news
 
@@ -215,6 +216,7 @@ class Explorer(State):
             self.parts["tray"].value = page.tray(answers.against(answer, pins), [colour for *_, colour in PINS])
             self._show(answer)
             self._tell(heard, busy=self._refresher.overtaken)
+            time.sleep(YIELD_S)
             if not self._refresher.overtaken:            # intervals for the newest state alone
                 self.intervals = intervals(design, scenario, draws=answers.DRAWS, model=model)
                 answer = answer._replace(spans=self.intervals, sure=True)
@@ -222,7 +224,7 @@ class Explorer(State):
                     self._show(answer)
                 self.parts["verdict"].value, self._table = answers.answer(answer)
                 if view == "sweep" and not now["sweep_second"]:
-                    self._band = answers.band_of(answer)
+                    self._band = answers.band_of(answer._replace(band=self._band), lambda: self._refresher.overtaken)
                     self._show(answer)
                 self._rate(answer, heard)
         except Exception as error:                       # anything at all: the app must go on and say what happened
