@@ -28,14 +28,10 @@ def _allowed(minimum, maximum, above, below, whole, choices, infinite, optional,
     if choices:
         return "one of " + ", ".join(f"{c:g}" for c in choices)
     kind = "a whole number" if whole else ""
-    if above == 0 and maximum == math.inf and below is None:
-        span = "positive"
-    elif minimum == 0 and maximum == math.inf and below is None:
-        span = "zero or more"
-    else:
-        bounds = [f"above {above:g}" if above is not None else f"at least {minimum:g}" if minimum > -math.inf else "",
-                  f"below {below:g}" if below is not None else f"at most {maximum:g}" if maximum < math.inf else ""]
-        span = " and ".join(filter(None, bounds))
+    low = f"above {above:g}" if above is not None else f"at least {minimum:g}" if minimum > -math.inf else ""
+    high = f"below {below:g}" if below is not None else f"at most {maximum:g}" if maximum < math.inf else ""
+    span = " and ".join(filter(None, [low, high]))
+    span = {"above 0": "positive", "at least 0": "zero or more"}.get(span, span)
     words = ", ".join(filter(None, [kind, span])) or "a number" * infinite
     return (words if kind or infinite else " and ".join(filter(None, [words, "finite"]))) + optional * " or None"
 
@@ -204,10 +200,21 @@ def limits_of(cls):
     return {f.name: dict(f.metadata) for f in dataclasses.fields(cls) if "minimum" in f.metadata}
 
 
-def _lanes(record, name, index):
-    """Lanes of a field that is computed when it is first read."""
-    value = np.broadcast_to(getattr(record, name), record.shape)[index]
-    return value if np.ndim(value) else value.item()
+def _picked(value, shape, index):
+    """Lanes of a number, an array or a record of such; what is computed when it is first read stays for later."""
+    if isinstance(value, Record):
+        return dataclasses.replace(value, **{
+            name: functools.partial(_picked_later, value, name, shape, index) if callable(vars(value).get(name))
+            else _picked(getattr(value, name), shape, index)
+            for name in _names(type(value)) if name not in value.apart})
+    if isinstance(value, np.ndarray) and value.ndim:
+        value = np.broadcast_to(value, shape)[index]
+        return value if np.ndim(value) else value.item()
+    return value
+
+
+def _picked_later(record, name, shape, index):
+    return _picked(getattr(record, name), shape, index)
 
 
 @functools.cache
@@ -273,8 +280,8 @@ class Record(Shown):
         found = {}
         for name in _names(type(self)):
             value = getattr(self, name)
-            if isinstance(value, Record):
-                found |= value.numbers(prefix + name + ".") if name not in self.apart else {}
+            if isinstance(value, Record) and name not in self.apart:
+                found |= value.numbers(prefix + name + ".")
             elif isinstance(value, (float, int, np.ndarray, np.generic)):
                 found[prefix + name] = value
         return found
@@ -295,8 +302,8 @@ class Record(Shown):
     def _key(self):
         """What equality and hash compare."""
         def plain(value):
-            if isinstance(value, np.ndarray):            # + 0.0: minus zero equals zero
-                return value.shape, (value + 0.0).tobytes() if value.dtype.kind == "f" else value.tobytes()
+            if isinstance(value, np.ndarray):            # + 0: minus zero equals zero
+                return value.shape, (value + 0).tobytes()
             return "nan" if isinstance(value, float) and value != value else value
 
         return tuple(plain(getattr(self, f.name)) for f in dataclasses.fields(self) if f.compare)
@@ -309,22 +316,9 @@ class Record(Shown):
 
     def __getitem__(self, index):
         """The lanes that `index` picks, as a record of the same kind."""
-        shape = self.shape
-        if not shape:
+        if not self.shape:
             raise TypeError(f"this {type(self).__name__} is a single one and cannot be indexed")
-
-        def pick(value):
-            if isinstance(value, Record):
-                names = (name for name in _names(type(value)) if name not in value.apart)
-                return dataclasses.replace(value, **{
-                    name: functools.partial(_lanes, value, name, index) if callable(vars(value).get(name))
-                    else pick(getattr(value, name)) for name in names})
-            if isinstance(value, np.ndarray) and value.ndim:
-                value = np.broadcast_to(value, shape)[index]
-                return value if np.ndim(value) else value.item()
-            return value
-
-        return pick(self)
+        return _picked(self, self.shape, index)
 
     def __iter__(self):
         return (self[i] for i in range(len(self)))

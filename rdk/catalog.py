@@ -209,8 +209,8 @@ def to_json(design: Design, scenario: Scenario | None = None) -> str:
     if len(design.shape) > 1 or scenario is not None and scenario.shape:
         raise ValueError("to_json keeps one design or a flat population, and a single scenario; got shapes "
                          f"{design.shape} and {scenario and scenario.shape}")
-    kept = {"format": "rdk-design-1", "design": _plain(design)}
-    return json.dumps(kept | ({} if scenario is None else {"scenario": _plain(scenario)}), indent=1, allow_nan=False)
+    kept = {"format": "rdk-design-1", "design": plain(design)}
+    return json.dumps(kept | ({} if scenario is None else {"scenario": plain(scenario)}), indent=1, allow_nan=False)
 
 
 def write(text: str, path: str | Path) -> Path:
@@ -231,17 +231,17 @@ def write(text: str, path: str | Path) -> Path:
     return path
 
 
-def _plain(value):
+def plain(value):
     """What JSON can hold: infinity as a word, unknown numbers left out."""
     if dataclasses.is_dataclass(value):
         fields = {f.name: getattr(value, f.name) for f in dataclasses.fields(value)}
-        return {name: _plain(v) for name, v in fields.items() if not (isinstance(v, float) and v != v)}
+        return {name: plain(v) for name, v in fields.items() if not (isinstance(v, float) and v != v)}
     if isinstance(value, dict):
-        return {name: _plain(v) for name, v in value.items()}
+        return {name: plain(v) for name, v in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(v) for v in value]
+        return [plain(v) for v in value]
     if isinstance(value, (np.ndarray, np.generic)):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     return ("Infinity" if value > 0 else "-Infinity") if isinstance(value, float) and math.isinf(value) else value
 
 
@@ -262,7 +262,7 @@ def from_json(text: str) -> tuple[Design, Scenario | None]:
     if kept.get("scenario") is None:
         return design, None
     try:
-        scenario = _built(Scenario, kept["scenario"], "scenario")
+        scenario = built(Scenario, kept["scenario"])
     except (KeyError, TypeError) as error:
         raise ValueError(f"the file's scenario is damaged: {error!r}") from None
     if scenario.shape:
@@ -291,11 +291,12 @@ def _text(text):
 
 
 def _number(value):
-    return float(value) if value in ("Infinity", "-Infinity") else value
+    return float(value) if value in ("Infinity", "-Infinity", "inf") else value
 
 
-def _built(kind, values, where):
-    """A `kind` from a JSON object; unknown fields are refused."""
+def built(kind, values):
+    """A record from a JSON object; unknown fields are refused."""
+    where = kind.__name__.lower()
     if not isinstance(values, dict):
         raise ValueError(f"the file's {where} is damaged: it must be an object; got {values!r:.40}")
     known, fields = {f.name: f for f in dataclasses.fields(kind)}, {}
@@ -303,7 +304,7 @@ def _built(kind, values, where):
         if name not in known:
             raise unknown(f"the file's {where} has an unknown field", name, known)
         if name in _PARTS and value is not None:
-            value = _built(_PARTS[name], value, name)
+            value = built(_PARTS[name], value)
         elif name == "constraints":
             value = [[_number(part) for part in demand] for demand in value]
         elif name == "name":
@@ -382,7 +383,7 @@ def _design(values):
     missing = [n for n in DESIGN_SPACE if n not in values]
     if missing:
         raise ValueError(f"the file's design lacks {', '.join(missing)}")
-    design = _built(Design, values, "design")
+    design = built(Design, values)
     if len(design.shape) > 1 or 0 in design.shape:
         raise ValueError(f"the file must hold one design or a list of some; got shape {design.shape}")
     return design

@@ -202,18 +202,11 @@ class _Read(Mapping):
 class Intervals(Shown):
     """Monte-Carlo intervals of every metric, each computed when first asked for.
 
-    Attributes
-    ----------
-    level : float
-        Probability between `low` and `high`.
-    nominal, low, median, high : mapping of str to float or ndarray
-        By metric, with the shape of the design; true/false metrics as the share of draws in which they hold.
-    clamped : mapping of str to (bool, bool)
-        Whether the low and the high end are a clamp or stand beside an atom: at least 1 % of the draws share the value
-        of the end, or the least (the largest) value of all - a limit of the model or of the mission, a stall at 0. A
-        share of draws then says more than the end.
-    performance, draws : Performance
-        Of the nominal inputs, and of all draws: shape (draws, ...).
+    `nominal`, `low`, `median` and `high` map metrics to numbers with the shape of the design, true/false ones to the
+    share of draws in which they hold; `level` is the probability between low and high. `performance` is that of the
+    nominal inputs, `draws` has all draws, shape (draws, ...). `clamped` maps a metric to two flags: whether its low and
+    its high end are a clamp or stand beside an atom, a value that 1 % of the draws share (a limit of the model or of
+    the mission, a stall at 0). A share of draws then says more than the end.
     """
     level: float
     performance: Performance

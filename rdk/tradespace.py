@@ -1,8 +1,4 @@
-"""Pareto fronts by NSGA-II.
-
-The optimiser is pymoo's with the paper's settings, on the evaluator itself. What needs no optimiser - random designs,
-sweeps, intervals, attribution - is in `sampling`.
-"""
+"""Pareto fronts by NSGA-II: pymoo's, with the paper's settings, on the evaluator itself."""
 from __future__ import annotations
 
 import dataclasses
@@ -31,20 +27,11 @@ MOST_GENERATIONS, PATIENCE, LEAST_GAIN = 1000, 20, 1e-4  # of a search that stop
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Front(Shown):
-    """Non-dominated designs of a search, by rising mass; of designs alike in every objective, one.
+    """Non-dominated designs of a search, by rising mass, shape (n,); of designs alike in every objective, one.
 
-    Attributes
-    ----------
-    designs, performance : Design, Performance
-        With shape (n,); n is 0 where no design met the constraints, and `message` says so.
-    scenario : Scenario
-        As searched: with the problem's traverse limit.
-    problem : Problem
-        Objectives, constraints and seed of the search.
-    objective_history : tuple of ndarray
-        The non-dominated feasible objectives after each generation, all to be minimised.
-    message : str
-        Empty, or what to know about the result.
+    The `scenario` is as searched, with the problem's traverse limit; the `problem` has objectives, constraints and seed
+    of the search; `objective_history` has the non-dominated feasible objectives after each generation, all to be
+    minimised. The `message` is empty or says what to know: where no design met the constraints n is 0, and it says so.
     """
     designs: Design
     performance: Performance
@@ -74,12 +61,9 @@ class Front(Shown):
 
     def save(self, path: str | Path) -> None:
         """Write the front to a JSON file, complete or not at all; `rdk.catalog.from_json` reads its designs too."""
-        def plain(record):
-            return {name: "inf" if v == math.inf else v for name, v in dataclasses.asdict(record).items()}
-
-        kept = json.loads(catalog.to_json(self.designs, self.scenario)) | {
-            "model": plain(self.model), "problem": plain(self.problem), "message": self.message,
-            "objective_history": [F.tolist() for F in self.objective_history]}
+        kept = json.loads(catalog.to_json(self.designs, self.scenario)) | catalog.plain({
+            "model": self.model, "problem": self.problem, "message": self.message,
+            "objective_history": self.objective_history})
         catalog.write(json.dumps(kept, allow_nan=False), path)
 
     @classmethod
@@ -92,9 +76,7 @@ class Front(Shown):
             designs, scenario = catalog.from_json(json.dumps(kept | some))
             if empty:
                 designs = Design(**{name: np.empty(0) for name in DESIGN_SPACE})
-            model, problem = (
-                kind(**{name: math.inf if v == "inf" else v for name, v in kept[kind.__name__.lower()].items()})
-                for kind in (Model, Problem))
+            model, problem = catalog.built(Model, kept["model"]), catalog.built(Problem, kept["problem"])
             history = tuple(np.array(F, float).reshape(len(F), len(problem.objectives))
                             for F in kept["objective_history"])
             return cls(designs, evaluate(designs, scenario, model=model), scenario, model, problem, history,
@@ -310,11 +292,11 @@ def _first_generation(start, bounds):
             genes = super()._do(mission, n_samples, *args, **kwargs)
             if isinstance(start, str):
                 light_corner(genes[:n_samples // 2])     # a view
-                return genes
-            known = encode(designs, bounds)
-            if len(known) > n_samples:
-                known = known[np.linspace(0, len(known) - 1, n_samples).round().astype(int)]
-            genes[:len(known)] = known
+            else:
+                known = encode(designs, bounds)
+                if len(known) > n_samples:
+                    known = known[np.linspace(0, len(known) - 1, n_samples).round().astype(int)]
+                genes[:len(known)] = known
             return genes
 
     return Start()

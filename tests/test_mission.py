@@ -713,3 +713,10 @@ def test_a_lane_of_a_population_computes_no_field_that_nobody_reads(monkeypatch)
     assert len(marched) == 1
     assert [lane.arrival_h for lane in lanes] == [many.arrival_h[3]] * 3 and np.isfinite(many.arrival_h).any()
     assert len(marched) == 2 and isinstance(lanes[0].tip_over_deg, float)
+
+
+def test_a_lane_of_a_population_keeps_its_mass_breakdown():
+    many = rdk.evaluate(rdk.random_designs(5, seed=2), MARE)
+    one, some = many[3], many[1:4]                       # before anybody has read the breakdown
+    assert some.mass.shape == (3,) and isinstance(one.mass.total_kg, float)
+    assert one.mass.total_kg == some.mass.total_kg[2] == many.mass.total_kg[3] == many.total_mass_kg[3]
