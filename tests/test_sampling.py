@@ -51,7 +51,6 @@ def assert_buildable(designs, bounds=None):
                                   lambda seed: rdk.intervals(RASHID, MARE, draws=2, seed=seed),
                                   lambda seed: rdk.pareto_front(MARE, population=4, generations=1, seed=seed),
                                   lambda seed: rdk.fronts([MARE], seeds=[seed], population=4, generations=1),
-                                  lambda seed: rdk.validation.bootstrap_medians(seed=seed, samples=2),
                                   lambda seed: rdk.terrain.synthetic(seed, cells=32)])
 def test_a_seed_is_a_whole_number_everywhere(call, seed):
     with pytest.raises(ValueError, match="seeds? must be (a whole number, zero or more|one number)"):
