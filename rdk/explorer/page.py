@@ -126,7 +126,9 @@ def verdict(status, sentence, why, levers, odds, cards, readings):
         <b>{STATUS[status][0]} {escape(sentence)}</b> <span class="rdk-say">{escape(odds)}</span></div>
         <div class="l">{escape(why)} {tries}</div></section>{cards}
         <details class="rdk-more"><summary>all readings</summary><div class="rdk-over" tabindex="0">
-        {table(("reading", "value", "90 % interval", "needed"), readings)}</div></details>"""
+        {table(("reading", "value", "90 % interval", "needed"), readings)}
+        <p class="rdk-say">On a card, | marks an end that many draws share: a limit, or 0 where they stall.</p></div>
+        </details>"""
 
 
 def card(title, value, unit, status, note, change="", at=math.nan, interval=None, need=None, old=False):
