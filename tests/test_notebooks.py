@@ -1,5 +1,6 @@
 """The form of the committed notebooks: executed, clean, short, linked. nbval compares their outputs."""
 
+import importlib
 import re
 import statistics
 import unicodedata
@@ -164,6 +165,10 @@ def test_no_dead_reference(path, prose):
         for part in name.split(".")[1:]:
             assert hasattr(thing, part), f"`rdk{name}`"
             thing = getattr(thing, part)
+    for module, name in re.findall(r"`(\w+)\.(\w+)", prose):
+        beside, inside = ((REPO / f"{folder}/{module}.py").exists() for folder in ("notebooks", "rdk"))
+        if beside or inside and module != "design":      # a design's own fields
+            assert hasattr(importlib.import_module(module if beside else f"rdk.{module}"), name), f"`{module}.{name}`"
     assert not [name for name in re.findall(r"`(data/[\w./]+)`", prose) if not (REPO / name).exists()]
     heads = {re.sub(r"[^\w\- ]", "", head).strip().replace(" ", "-")
              for head in re.findall(r"^#+ (.+)$", prose, re.M)}
