@@ -15,8 +15,8 @@ from .inputs import METRICS, NUMBERS, ODDS, label
 from .page import card, verdict
 
 BAND_DRAWS, CURVE, MAP = 256, 61, 25                     # of the readings' draws the first; points of a sweep
-Answer = namedtuple("Answer", "now design scenario model result binding before ghosts reference spans sure front odds "
-                    "band", defaults=(False, None, (None, None), (None, None)))
+Answer = namedtuple("Answer", "now design scenario model result binding levers before ghosts reference spans sure "
+                    "front odds band", defaults=(False, None, (None, None), (None, None)))
 """What the page shows of one state: inputs `now`, the result `before` the last change, `ghosts` as (letter, class,
 result) of pinned designs, the `reference` of "why"; `spans` are intervals, older ones unless `sure`, and `odds` and
 `band` are pairs whose first part says what they are of."""
@@ -108,13 +108,13 @@ def answer(a):
         share = 100 * float(a.spans.share(asked(a.scenario.problem.constraints)))
         more = any((metric, limit) != ("range_km", 0.1) for metric, _, limit in a.scenario.problem.constraints)
         odds = f"{'Meets all demands' if more else 'Drives'} in {share:.0f} % of {DRAWS:,} draws."
-    levers = explain.levers(a.design, a.scenario, a.result, a.binding.key, model=a.model)
-    buttons = [(f"lever:{lever[0]}", "{1} +10 %: {2:+.2g} {3}".format(*lever)) for lever in levers[:3] if lever[2] > 0]
+    buttons = [(f"lever:{field}", f"{name} +10 %: {gain:+.2g} {unit}") for field, name, gain, unit in a.levers[:3]
+               if gain > 0]
     head = a.binding.sentence
     if buttons:
         head = head.split(":")[0] + ". Try" if a.binding.key not in ("soil", "traction") else "Try"
     status = "missed" if not met else "risk" if "! at risk" in shown else "met"
-    return verdict(status, sentence, head, buttons, odds, shown, table), table
+    return verdict(status, sentence, head, buttons, odds, shown, table, not a.sure), table
 
 
 def against(a, pins):

@@ -209,8 +209,9 @@ class Explorer(State):
             self.error = ""
             ghosts = [(letter, cls, evaluate(other, scenario, model=model))
                       for (letter, cls, _), (_, other) in zip(PINS, pins)]
-            answer = answers.Answer(now, design, scenario, model, result, self.binding, before, ghosts, reference,
-                                    self.intervals)
+            levers = explain.levers(design, scenario, result, self.binding.key, model=model)
+            answer = answers.Answer(now, design, scenario, model, result, self.binding, levers, before, ghosts,
+                                    reference, self.intervals)
             self.parts["verdict"].value, self._table = answers.answer(answer)
             self.parts["side"].value = rover_picture(design, result, scenario, width=290)
             self.parts["tray"].value = page.tray(answers.against(answer, pins), [colour for *_, colour in PINS])

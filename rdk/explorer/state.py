@@ -44,6 +44,7 @@ class State:
         self._catalogue = {name: catalog.scenario(name) for name in catalog.scenario_names()}
         self._soils = {name: catalog.soil(name) for name in catalog.soil_names()}
         self._rovers = {name: catalog.rover(name) for name in catalog.rover_names()}
+        self._known = {rover: name for name, rover in self._rovers.items()}
         self._chosen = dict(CHOSEN)
         self._now = self._base = design, mission, model  # the rover and mission last chosen are the base
         self._put(design, mission)
@@ -71,7 +72,7 @@ class State:
                    for name, (metric, sign, _) in DEMANDS.items()},
                 **{goal: mission.problem.objectives.get(metric, "ignore") for goal, metric in GOALS.items()},
                 "survive": int(limits.get(("thermal_survival", ">="), 0)),
-                "rover": next((name for name, known in self._rovers.items() if known == design), OWN),
+                "rover": self._known.get(design, OWN),
                 "mission": mission.name if self._catalogue.get(mission.name) == mission else OWN,
                 "soil": mission.soil.name if self._soils.get(mission.soil.name) == mission.soil else OWN,
                 "preset": "engineering" if vars(model) == vars(ENGINEERING) | coefficients else "paper",
@@ -243,7 +244,6 @@ class State:
                 said.append(word)
         self._base = self.design if design else self._base[0], *(self._now if mission else self._base)[1:]
         self._notice = ("status", "; ".join(said))
-        self._poke()
 
     def _restore_link(self, text):
         """Lay the state of a link over the present one; what is wrong in it is said, the rest taken."""
