@@ -123,7 +123,8 @@ def verdict(status, sentence, why, levers, odds, cards, readings, old=False):
     """The answer in words, its cards, and all readings folded away; levers are (action, words)."""
     tries = "".join(button(action, escape(words)) for action, words in levers)
     return f"""<section class="rdk-say1 rdk-{status}" aria-label="answer"><div role="status">
-        <b>{STATUS[status][0]} {escape(sentence)}</b> <span class="rdk-say{" rdk-old" * old}">{escape(odds)}</span></div>
+        <b>{STATUS[status][0]} {escape(sentence)}</b>
+        <span class="rdk-say{" rdk-old" * old}">{escape(odds)}</span></div>
         <div class="l">{escape(why)} {tries}</div></section>{cards}
         <details class="rdk-more"><summary>all readings</summary><div class="rdk-over" tabindex="0">
         {table(("reading", "value", "90 % interval", "needed"), readings)}
