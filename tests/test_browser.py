@@ -94,6 +94,7 @@ def served(chromium, app):
 def explorer(served):
     """The app at its start."""
     served.page.set_viewport_size({"width": browser.WIDTH, "height": browser.HEIGHT})
+    served.evaluate("e => e.querySelectorAll('details').forEach(d => d.open = false)")
     view(served, "Mission log")
     tab(served, "mission")
     for mission in MARE, "polar_prospecting":
