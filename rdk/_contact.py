@@ -187,8 +187,8 @@ def entry_angle(patch, s, target, with_pull=0.0, rule=DRIVING):
             for row, value in zip(result, (theta + last, load + load_t * last, pull + pull_t * last)):
                 row[to] = value[done]
             keep = np.flatnonzero(~out)
-            lane, patch, s, target, with_pull = lane[keep], patch.take(keep), s[keep], target[keep], with_pull[keep]
-            low, high, new = low[keep], high[keep], new[keep]
+            lane, patch, s, target, with_pull, low, high, new = (
+                kept.take(keep) for kept in (lane, patch, s, target, with_pull, low, high, new))
         theta = new
     return result
 
@@ -268,8 +268,7 @@ def _slip_balance(patch, *lanes):
     found = _balanced(patch, *lanes, DRIVING)
     brakes = np.flatnonzero(found[0] < 0)
     if brakes.size:
-        again = _balanced(patch.take(brakes), *(a[brakes] for a in lanes), BRAKING)
-        for whole, part in zip(found, again):
+        for whole, part in zip(found, _balanced(*(a.take(brakes) for a in (patch, *lanes)), BRAKING)):
             whole[brakes] = part
     return found
 
@@ -289,7 +288,7 @@ def _balanced(patch, load, required, low, high, theta_high, pull_high, guess, ru
     theta = np.where(buried | stalled, theta_high, np.where(slides, theta_low, np.nan))
     lane = np.flatnonzero(stalled | slides)
     if lane.size:                                        # both ends alike, but the pull may peak or dip between them
-        found = _inner_balance(patch.take(lane), *(a[lane] for a in (load, required, low, high, stalled, theta)), rule)
+        found = _inner_balance(*(a.take(lane) for a in (patch, load, required, low, high, stalled, theta)), rule)
         kept = np.isfinite(found[0])
         lane, found = lane[kept], found[:, kept]
         slip[lane], theta[lane] = found
@@ -297,7 +296,7 @@ def _balanced(patch, load, required, low, high, theta_high, pull_high, guess, ru
     lane = np.flatnonzero(crossing)
     if lane.size:
         slip[lane], theta[lane] = newton_balance(
-            patch.take(lane), *(a[lane] for a in (load, required, low, high, theta_high, guess)), rule)
+            *(a.take(lane) for a in (patch, load, required, low, high, theta_high, guess)), rule)
     free = np.flatnonzero(~buried & ~crossing & ~short & (low > 0))
     if free.size:                                        # not even the lowest slip of a driving interval is needed
         theta[free], _, _ = entry_angle(patch.take(free), slip[free], load[free], rule=rule)
@@ -321,7 +320,7 @@ def _inner_balance(patch, load, required, low, high, short, theta_end, rule):
     lane = np.flatnonzero(fall * (high - low) > np.abs(required - arcs.pull))
     if not lane.size:
         return result
-    patch, load, required, low, high, short = (patch.take(lane), *(a[lane] for a in (load, required, low, high, short)))
+    patch, load, required, low, high, short = (a.take(lane) for a in (patch, load, required, low, high, short))
 
     def surplus(s, i):
         gap = entry_angle(patch.take(i), s, load[i], rule=rule)[2] - required[i]
@@ -356,13 +355,12 @@ def newton_balance(patch, load, required, low, high, theta, guess, rule):
         if done.any():
             result[:, lane[done]] = new_s[done], new_theta[done]
             keep = np.flatnonzero(~done)
-            lane, patch, load, required = lane[keep], patch.take(keep), load[keep], required[keep]
-            low, high, new_theta, new_s = low[keep], high[keep], new_theta[keep], new_s[keep]
+            lane, patch, load, required, low, high, new_theta, new_s = (
+                kept.take(keep) for kept in (lane, patch, load, required, low, high, new_theta, new_s))
         theta, s = new_theta, new_s
     lost = np.flatnonzero(np.isnan(result[0]))
     if lost.size:
-        patch, *arrays = everything
-        result[:, lost] = bracketed_balance(patch.take(lost), *(a[lost] for a in arrays), rule)
+        result[:, lost] = bracketed_balance(*(a.take(lost) for a in everything), rule)
     return result
 
 

@@ -42,12 +42,8 @@ def cruise_speed(average_solar_power_w: Real, base_load_w: Real, wheel_count: Re
 
     The energy-balance speed alone, (P_solar - P_a - P_payload) r (1 - s) eta_m / (delta N_w T), reaches tens of m/s
     on easy ground. The cap omega_0 r (1 - s) is not in the paper's text but shapes its highland plateau. Where the
-    torque of a wheel is not positive, driving costs nothing and the hub sets the speed.
-
-    Returns
-    -------
-    speed_m_s, energy_balance_speed_m_s, mobility_power_w : float or ndarray
-        Cruise speed; the speed without the caps; electrical power of all hubs while driving at cruise speed.
+    torque of a wheel is not positive, driving costs nothing and the hub sets the speed. Returns the cruise speed, the
+    speed without the caps, and the electrical power of all hubs while driving at cruise speed.
     """
     rolling_radius = wheel_radius_m * (1 - slip)
     torque = np.maximum(wheel_torque_nm, 0.0) * wheel_count

@@ -87,7 +87,7 @@ class Problem(Record):
             raise ValueError(f"objectives must be a dictionary like {{'range_km': 'max'}}; got {self.objectives!r:.80}")
         for name, way in self.objectives.items():
             if way not in ("max", "min"):
-                raise ValueError(f"objectives must be named with a way: {name} must be 'max' or 'min'; got {way!r:.80}")
+                raise ValueError(f"objectives must be ways: {name} must be 'max' or 'min'; got {way!r:.80}")
         if not (isinstance(self.constraints, (list, tuple)) and all(
                 isinstance(c, (list, tuple)) and len(c) == 3 and c[1] in (">=", "<=") for c in self.constraints)):
             raise ValueError(f"constraints must be like ('range_km', '>=', 0.1) each; got {self.constraints!r:.80}")

@@ -33,20 +33,16 @@ class Performance(Record):
     range_km: float = described("Distance driven, at most the scenario's limit; 0 for stalled or buried designs.")
     total_mass_kg: float = described("With payload.")
     slope_capability_deg: float = described("Steepest slope climbed at the capability slip, cut at the search limit.")
-    energy_balance_pct: float = described(
-        "(generated - consumed) / consumed, by the trapezoidal rule over the hourly samples; as in the original "
-        "release nothing is recorded at t = 0, so the last sample counts half.")
+    energy_balance_pct: float = described("(generated - consumed) / consumed, by the trapezoidal rule over the hourly "
+                                          "samples; nothing is recorded at t = 0, so the last one counts half.")
     stalled: bool = described("No slip develops the required pull, or the torque exceeds the peak hub torque.")
-    thermal_survival: bool = described(
-        "Hot and cold case inside the operating limits. A flag only: `feasible` leaves it out, as the paper does.")
-    feasible: bool = described(
-        "Neither stalled nor buried, energy balance not negative, range above 0, required obstacle climbed.")
+    thermal_survival: bool = described("Hot and cold case inside the operating limits; no part of `feasible`.")
+    feasible: bool = described("Neither stalled nor buried, energy balance not negative, range above 0, obstacle met.")
     buried: bool = described("No entry angle carries the load: slip, sinkage and torque are NaN.")
     slip: float = described("At the slip balance on the scenario slope, as are sinkage and torque.")
     sinkage_m: float
     wheel_torque_nm: float
-    cruise_speed_m_s: float = described(
-        "While driving: the lower of the energy-balance speed and the hub's no-load speed; 0 if stalled.")
+    cruise_speed_m_s: float = described("The lower of the energy-balance and the hub's no-load speed; 0 if stalled.")
     energy_balance_speed_m_s: float = described("Before the hub caps it; 0 if stalled or without surplus power.")
     hub_speed_limited: bool = described("The hub, not the energy, sets the cruise speed.")
     average_solar_power_w: float = described("Mission mean.")
@@ -57,22 +53,17 @@ class Performance(Record):
     obstacle_capability_m: float = described("0.5 r rigid, 1.25 r rocker-bogie (by default).")
     ground_pressure_kpa: float = described(
         "Mean vertical pressure under a wheel at the slip balance: its load over the wheel's width times the length of "
-        "its contact, sqrt(z (2 r - z)) at sinkage z. The paper has no such figure; a constraint on it is one remedy "
-        "for the wheels that shrink to the search bound.")
-    sliding: bool = described(
-        "On a descent the wheels cannot brake: the pull at the lowest slip exceeds the demand. Then `stalled`.")
-    unserved_h: float = described(
-        "Time in which avionics or payload are not fully supplied: an empty pack and too little sun. In whole time "
-        "steps, without `Model.exact_floor`.")
+        "its contact, sqrt(z (2 r - z)) at sinkage z. Not in the paper.")
+    sliding: bool = described("On a descent the wheels cannot brake: too much pull at the lowest slip. Then `stalled`.")
+    unserved_h: float = described("Time in which an empty pack and too little sun do not fully supply avionics or "
+                                  "payload; in whole time steps, without `Model.exact_floor`.")
     arrival_h: float = Later("When the traverse limit is reached; infinity if never.")
     hot_survival: bool = described("Noon below the upper limit: half of `thermal_survival`.")
     cold_survival: bool = described("Night above the lower limit: its other half.")
     structure_share: float = described("Chassis mass over total mass.")
-    wheel_gap_m: float = described(
-        "Wheelbase less the length that the wheels of one side take up: 2 (r + h_g) on four, 4 (r + h_g) on six. "
-        "Negative where they overlap, which no model forbids.")
-    tip_over_deg: float = Later("Least slope at which the standing rover tips over, in any direction; "
-                                "`rdk.stability` has its assumptions.")
+    wheel_gap_m: float = described("Wheelbase less the length of one side's wheels, 2 (r + h_g) on four, 4 (r + h_g) "
+                                   "on six: negative where they overlap, which no model forbids.")
+    tip_over_deg: float = Later("Least slope in any direction at which the standing rover tips; see `rdk.stability`.")
     mass: MassBreakdown = Later("Its items.")
     log: TraverseLog | None = described("Hour by hour, for one design only.", default=None, compare=False)
 
@@ -122,11 +113,11 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
                                         model.sink_temperature_cold_k, emissivity=model.enclosure_emissivity)
         hot_survival = hot <= model.operating_temperature_max_c
         cold_survival = cold >= model.operating_temperature_min_c
-        obstacle = design.wheel_radius_m * np.where(np.equal(design.wheel_count, 6), model.rocker_bogie_obstacle_ratio,
-                                                    model.rigid_obstacle_ratio)
-        contact_m2 = design.wheel_width_m * np.sqrt(balance.sinkage_m * (2 * design.wheel_radius_m - balance.sinkage_m))
+        r, z, six = design.wheel_radius_m, balance.sinkage_m, np.equal(design.wheel_count, 6)
+        obstacle = r * np.where(six, model.rocker_bogie_obstacle_ratio, model.rigid_obstacle_ratio)
+        contact_m2 = design.wheel_width_m * np.sqrt(z * (2 * r - z))
         pressure = weight * np.cos(np.radians(scenario.slope_deg)) / contact_m2 / 1000
-        along = np.where(np.equal(design.wheel_count, 6), 4, 2) * (design.wheel_radius_m + design.grouser_height_m)
+        along = np.where(six, 4, 2) * (r + design.grouser_height_m)
         feasible = (~np.asarray(stalled) & (travelled["energy_balance_pct"] >= 0) & (travelled["range_km"] > 0)
                     & (obstacle >= scenario.required_obstacle_height_m))
     found = dict(

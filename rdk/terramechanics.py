@@ -1,21 +1,19 @@
 """Wheel on soil: rigid-wheel Bekker-Wong contact with an engaged-grouser correction.
 
-Equation names are those of the paper (Reifschneider, RoverDevKit): Bekker's pressure-sinkage law, the
-Wong-Reece stress distribution, Janosi-Hanamoto shear, Mohr-Coulomb strength. Angles run from the downward
-vertical, forward positive; the wheel touches soil from the exit at 0 to the entry angle theta_1.
+Equation names are those of the paper (Reifschneider, RoverDevKit): Bekker's pressure-sinkage law, the Wong-Reece stress
+distribution, Janosi-Hanamoto shear, Mohr-Coulomb strength. Angles run from the downward vertical, forward positive; the
+wheel touches soil from the exit at 0 to the entry angle theta_1.
 
-Limits: rigid wheel, level homogeneous soil, steady state, no bulldozing, no rebound behind the wheel
-(theta_2 = 0), no multi-pass. Checked against soft-soil tests only; on firm soil it sinks too far. At slips near -1
-on soil of high cohesion (10 kPa) and small K (below 3 mm) the integrals are good to 0.4 % of the load, and more than
-one entry angle may carry it: do not trust the pull there.
+Limits: rigid wheel, level homogeneous soil, steady state, no bulldozing, no rebound behind the wheel (theta_2 = 0), no
+multi-pass. Checked against soft-soil tests only; on firm soil it sinks too far. At slips near -1 on soil of high
+cohesion (10 kPa) and small K (below 3 mm) the integrals are good to 0.4 % of the load, and more than one entry angle
+may carry it: do not trust the pull there.
 
-How it is solved. Each contact arc is mapped to [0, 1] and integrated by Gauss-Legendre, so that the nodes
-move smoothly with entry angle and slip, and the exact derivatives of the forces come with the forces.
-Entry angle, slip and slope capability are then Newton iterations over all lanes at once, with a bracket to
-fall back on; a lane leaves the batch as soon as it has converged.
+How it is solved. Gauss-Legendre nodes on each contact arc move smoothly with entry angle and slip, so the exact
+derivatives of the forces come with the forces. Entry angle, slip and slope capability are Newton iterations over all
+lanes at once, with a bracket to fall back on; a lane leaves the batch as soon as it has converged.
 
-Arrays broadcast; a float comes back where every input is one. Inputs out of range, not finite or of lengths that
-disagree raise a ValueError.
+Arrays broadcast; a float comes back where every input is one.
 """
 from dataclasses import dataclass, fields
 from typing import NamedTuple

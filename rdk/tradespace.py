@@ -204,12 +204,11 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
     scenario, problem = posed(scenario, objectives, constraints, seed)
     algorithm = nsga2(scenario, problem, population, generations, model=model, start=start, bounds=bounds)
     mission, history, misses, stopped = algorithm.problem, [], [], False
-    archive = Archive(len(problem.objectives)) if until else None
+    archive = np.empty((0, len(problem.objectives))), np.empty((0, len(DESIGN_SPACE)))
 
     def so_far(message=""):
-        if archive is not None:
-            genes = archive.genes
-        else:
+        genes = archive[1]
+        if not until:
             best = [i for i in algorithm.opt if np.all(i.feas)] if algorithm.opt is not None else []
             # of designs alike in every objective keep one: the last bits would let it dominate its twins
             F = np.array([i.F for i in best]).reshape(-1, len(problem.objectives))
@@ -230,16 +229,16 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
 
     while algorithm.has_next() and not stopped:
         algorithm.next()
-        if archive is None:
+        if until:
+            archive = _merged(archive, mission.latest)
+            history.append(archive[0])
+            misses.append(mission.least)
+        else:
             opt = algorithm.opt
             history.append(opt.get("F")[opt.get("feas").ravel()])
-        else:
-            archive.add(*mission.latest)
-            history.append(archive.F)
-            misses.append(mission.least)
         if on_generation is not None:
             stopped = bool(on_generation(Progress(len(history), generations, so_far)))
-        if archive is not None and converged():
+        if until and converged():
             break
     front = so_far(f"stopped after generation {len(history)} of {generations}" if stopped else "")
     if not len(front):
@@ -253,19 +252,12 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
     return front
 
 
-class Archive:
-    """Every non-dominated feasible design of a search: objectives `F` (n, m) and `genes` (n, 11)."""
-
-    def __init__(self, objectives: int):
-        self.F, self.genes = np.empty((0, objectives)), np.empty((0, len(DESIGN_SPACE)))
-
-    def add(self, F: np.ndarray, genes: np.ndarray):
-        """Take in a generation; of designs alike in every objective the first stays."""
-        F, first = np.unique(F, axis=0, return_index=True)
-        fresh = ~(self.F[:, None] <= F).all(-1).any(0) & ~beaten(F, F)
-        F, genes = F[fresh], genes[first[fresh]]
-        kept = ~beaten(self.F, F)
-        self.F, self.genes = np.concatenate([self.F[kept], F]), np.concatenate([self.genes[kept], genes])
+def _merged(found, latest):
+    """Non-dominated designs of two sets, pairs of objectives and genes; of designs alike in every objective one."""
+    F, first = np.unique(latest[0], axis=0, return_index=True)
+    fresh = ~(found[0][:, None] <= F).all(-1).any(0) & ~beaten(F, F)
+    kept = ~beaten(found[0], F[fresh])
+    return np.concatenate([found[0][kept], F[fresh]]), np.concatenate([found[1][kept], latest[1][first[fresh]]])
 
 
 def budget(population, generations):
@@ -343,7 +335,7 @@ def nsga2(scenario: Scenario, problem: Problem, population: int = 50, generation
                     if value > 0)
 
     class StableSurvival(Survival):
-        """Rank and crowding, as pymoo's. Its sorts leave ties in an order that differs from processor to processor."""
+        """Rank and crowding, as pymoo's, whose sorts leave ties in an order that differs between processors."""
 
         def _do(self, mission, pop, *args, n_survive=None, **kwargs):
             F, violation, kept = pop.get("F"), pop.get("CV")[:, 0], []
