@@ -14,8 +14,8 @@ from functools import cached_property, partial
 import numpy as np
 import pandas as pd
 
-import chance
-from rdk import catalog, rediscovery, rules, validation
+import rediscovery
+from rdk import catalog, rules, validation
 from rdk._fields import check
 from rdk.design import Model
 from rdk.mission import evaluate
@@ -137,7 +137,7 @@ class Searches:
 
     @cached_property
     def chance(self):
-        return chance.baselines(self.found, count=160 * self.size["population"], seed=self.seed_offset)
+        return rediscovery.baselines(self.found, count=160 * self.size["population"], seed=self.seed_offset)
 
     @cached_property
     def distances(self):

@@ -18,7 +18,7 @@ _LAZY = {name: module for module, names in {
     "sampling": ("random_designs", "sweep", "Sweep", "intervals", "Intervals", "attribution", "Attribution"),
     "tradespace": ("pareto_front", "Front"), "studies": ("fronts",), "explorer": ("Explorer",),
     "report": ("write_report",), "sizing": ("size", "Sizing", "prudent_demands"),
-    None: ("explain", "explorer", "figures", "rediscovery", "report", "route", "rules", "sampling",
+    None: ("explain", "explorer", "figures", "report", "route", "rules", "sampling",
            "sizing", "stability", "studies", "terrain", "tradespace", "validation")}.items() for name in names}
 
 __all__ = [

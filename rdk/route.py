@@ -243,6 +243,8 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     require(way=(way, Way), design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     if scenario.start_utc is None:
         raise ValueError("a march needs the real sun: give the scenario a start_utc, such as '2026-10-01'")
+    if not len(way.slope_deg):
+        raise ValueError("a march needs a way of two points or more; where there is none, Route.message says why")
     check("go_soc", go_soc, 0, 1, scalar=True)
     check("rest_soc", rest_soc, np.max(model.soc_floor), go_soc, scalar=True)
     check("science_every_m", science_every_m, above=0, infinite=True, scalar=True)

@@ -351,6 +351,7 @@ def test_summer_and_winter_on_the_ridge():
     (dict(rest_soc=0.1), "rest_soc must be at least 0.15"), (dict(go_soc=1.5), "go_soc"), (dict(detour=0.9), "detour"),
     (dict(science_every_m=0), "science_every_m"), (dict(science_h=-1), "science_h"),
     (dict(delay_h=np.zeros((2, 2))), "one row of lanes"), (dict(delay_h="soon"), "delay_h must be"),
+    (dict(way=route.along(level(), np.empty((0, 2), int))), "a way of two points"),
     (dict(delay_h=[]), "one row of lanes; got shape"), (dict(step_h=0), "step_h"),
     (dict(science_h=[1.0, 2.0]), "science_h must be one number"), (dict(way="x"), "way must be a Way; got 'x'")])
 def test_bad_marches_are_refused(change, words):

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-import chance
+import rediscovery
 import sensitivity
 
 import rdk
-from rdk import catalog, rediscovery, rules, tradespace
+from rdk import catalog, rules, tradespace
 
 MARE, HIGHLAND = rdk.scenario("equatorial_mare_traverse"), rdk.scenario("highland_slope_capability")
 NAMES = rdk.scenario_names("canonical")
@@ -77,7 +77,7 @@ def test_an_empty_front_has_a_row_without_numbers(front):
     (lambda f: rediscovery.rediscover("Pragyan", generations=()), "generations must not be empty"),
     (lambda f: rediscovery.rediscover("Pragyan", generations=(0,)), "generations must be a whole number, at least 1"),
     (lambda f: rediscovery.rediscover("Pragyan", seeds=["a"]), "seeds must be a whole number"),
-    (lambda f: chance.baselines("x"), "found must be a table of rediscover; it has no column rover, front_designs"),
+    (lambda f: rediscovery.baselines("x"), "found must be a table of rediscover; it has no column rover, front_"),
     (lambda f: sensitivity.sobol(MARE, metrics=[]), "metrics: no Performance field"),
     (lambda f: sensitivity.sobol(MARE, design=rdk.random_designs(3, seed=1)), "design must be a single one"),
     (lambda f: sensitivity.sobol("mare"), "scenario must be a Scenario"),
@@ -300,7 +300,7 @@ def test_rediscovery_refuses_an_unknown_rover():
 
 
 def test_baselines(found):
-    table = chance.baselines(found.query("generations == 6"), count=1000).set_index("rover")
+    table = rediscovery.baselines(found.query("generations == 6"), count=1000).set_index("rover")
     # the mean of 200,000 pairs of 1,000 points: the points' own scatter is a percent
     assert_allclose(table.random_pair, CUBE_PAIR, rtol=0.02)
     assert table.feasible_fraction.between(0.7, 0.95).all()
@@ -308,7 +308,7 @@ def test_baselines(found):
     assert (table.nearest_capped_low <= table.nearest_capped).all()
     # more chances, nearer
     more = found.query("generations == 6").assign(front_designs=500)
-    assert (chance.baselines(more, count=1000).nearest_feasible.to_numpy()
+    assert (rediscovery.baselines(more, count=1000).nearest_feasible.to_numpy()
             < table.nearest_feasible.to_numpy()).all()
 
 
@@ -316,7 +316,7 @@ def test_baselines(found):
 def test_light_designs_are_uniform_in_the_light_part_of_the_space(name):
     """Against plain rejection: drawn from the whole box, kept where light enough, the means are the same."""
     target = rediscovery.Target.of(name)
-    found = chance.lighter_than(target, 500, seed=1)
+    found = rediscovery.lighter_than(target, 500, seed=1)
     assert (rules.mass_of(found, target.scenario, rdk.Model()).total_kg <= target.ceiling_kg).all()
     designs = rdk.random_designs(400_000, seed=2)
     plain = designs[rules.mass_of(designs, target.scenario, rdk.Model()).total_kg <= target.ceiling_kg]

@@ -4,15 +4,14 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-import chance
 import ledger
 import numpy as np
 import pandas as pd
+from rediscovery import baselines, unit_cube
 
 from rdk import catalog, validation
 from rdk.design import Design, Model
 from rdk.mission import evaluate
-from rdk.rediscovery import unit_cube
 from rdk.sampling import intervals
 
 from .judging import Exercise
@@ -106,7 +105,7 @@ EXERCISES["10.1"] = Exercise(
 def _nearest_of(chances, column="nearest_capped"):
     """Mean distance of the nearest of some random designs to Rashid-1."""
     one = pd.DataFrame(dict(rover=["Rashid-1"], front_designs=[chances]))
-    return chance.baselines(one, count=8000)[column][0]
+    return baselines(one, count=8000)[column][0]
 
 
 EXERCISES["10.2"] = Exercise(
