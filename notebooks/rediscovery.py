@@ -12,7 +12,7 @@ from rdk._fields import check, generator, listed, unknown, whole
 from rdk.design import DESIGN_SPACE, Design, Model, Scenario
 from rdk.mission import Performance, evaluate, mass_of
 from rdk.rules import place, require_table
-from rdk.sampling import random_designs
+from rdk.sampling import decode, random_designs
 from rdk.tradespace import beaten, minimised, pareto_front
 
 REDISCOVERED = {"Tenacious": "mare_micro", "CADRE-unit": "polar_micro", "Rashid-1": "mare_micro",
@@ -168,7 +168,7 @@ def lighter_than(target: Target, count: int, seed: int) -> Design:
     bounds["wheel_count"] = (4, 6 if is_light(Design(**low | {"wheel_count": 6})) else 4)
     found, block = [], 0
     while sum(map(len, found)) < count and block < 50:   # few designs are as light as the lightest rovers
-        designs = random_designs(100_000, (seed, block), bounds)
+        designs = decode(np.random.default_rng((seed, block)).random((100_000, len(DESIGN_SPACE))), bounds)
         found.append(designs[is_light(designs)])
         block += 1
     joined = {name: np.concatenate([getattr(designs, name) for designs in found]) for name in DESIGN_SPACE}

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from . import catalog
-from ._fields import Real, Record, check, floats, generator, limits_of, listed, number, unknown
+from ._fields import Real, Record, check, floats, generator, limits_of, listed, number, unknown, whole
 from .sky import Skyline
 
 RADIUS_M = 1_737_400.0                                   # the sphere of LOLA's heights
@@ -135,7 +135,7 @@ class Terrain:
         x, y, height_m = (check(name, value, low, scalar=True) for name, value, low in (
             ("x", x, -np.inf), ("y", y, -np.inf), ("height_m", height_m, 0)))
         check("farthest_m", farthest_m, above=NEAREST_M, scalar=True)
-        azimuth = np.arange(check("directions", directions, 4, whole=True, scalar=True)) * 360 / directions
+        azimuth = np.arange(whole("directions", directions, 4)) * 360 / directions
         (lat, lon), ground = self.to_latlon(x, y), float(self.at(x, y))
         if np.isnan(ground):
             raise ValueError(f"no height is known at x {x!r} m, y {y!r} m of {self!r}")
@@ -300,7 +300,7 @@ def synthetic(seed: int, *, like: str = "connecting_ridge_10m", cells: int = 256
     known = [name.removesuffix("_pct") for name in table.filter(like="_pct")]
     if like not in known:
         raise unknown("no map", like, known)
-    cells = check("cells", cells, 32, whole=True, scalar=True)
+    cells = whole("cells", cells, 32)
     step = check("step_m", float(re.search(r"_(\d+)m", like)[1]) if step_m is None else step_m, above=0, scalar=True)
     rng = generator(seed)
     wave = np.hypot(np.fft.fftfreq(cells)[:, None], np.fft.fftfreq(cells))
