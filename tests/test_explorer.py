@@ -311,6 +311,11 @@ def test_a_drag_is_one_step_back(explorer):
     assert len(explorer._past) == 1
     mass = explorer.result.total_mass_kg - rdk.evaluate(rdk.rover("Rashid-1"), explorer.scenario).total_mass_kg
     assert f"{mass:+.1f}".replace("-", "−") in shown(explorer)                # the change since the drag began
+    dragged = explorer.design
+    explorer._heard += 2000                              # events count milliseconds
+    events(explorer, ["slide", "wheel_radius_m", 20])
+    events(explorer, ["do", "undo"])
+    assert explorer.design == dragged
     events(explorer, ["do", "undo"])
     assert explorer.design == rdk.rover("Rashid-1")
 
