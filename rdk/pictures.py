@@ -147,14 +147,17 @@ class Axes:
             self.add("rect", "f3", x=a, y=self.box[1], width=b - a, height=self.box[3] - self.box[1], **look)
 
     def mark(self, x, y, kind="dot", cls="f0", size=5, **more):
-        """A mark at a point; no name is set upon it."""
+        """A mark at a point, where there is one; no name is set upon it."""
         x, y = float(self.x(x)), float(self.y(y))
-        self.taken.append((x - size, y - size, x + size, y + size))
-        self.parts.append(sign(kind, cls, x, y, size, **more))
+        if math.isfinite(x) and math.isfinite(y):
+            self.taken.append((x - size, y - size, x + size, y + size))
+            self.parts.append(sign(kind, cls, x, y, size, **more))
 
     def name(self, x, y, words, cls="s", sides=(1, -1)):
         """Words beside a point, on one of the sides, where they cover no mark and no other words."""
         x, y, wide = float(self.x(x)), float(self.y(y)), LETTER * len(words) + 2
+        if not (math.isfinite(x) and math.isfinite(y)):
+            return
         spots = [(x + 9 if side > 0 else x - 9 - wide, y + 4 + 6 * step) for step in (0, 2, -2, 3, -3, 4, -4, 6, -6, 8)
                  for side in sides]
         boxes = [(left, low - 10, left + wide, low + 2) for left, low in spots]
@@ -366,7 +369,7 @@ def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, si
     points = [] if rovers is None else [
         (x, float(np.clip(y, *axes.ys)), name, "s", "square", "f1", 3.5) for x, y, name in zip(*rovers)
         if values[0] <= x <= values[-1] and np.isfinite(y)]
-    axes.spots(*points, *([(*here, "", "", "dot", "f3", 6)] if np.isfinite(here[1]) else []))
+    axes.spots(*points, (*here, "", "", "dot", "f3", 6))
     stalls = [("cannot drive", "square", "", HATCHED)] if np.any(stalled) else []
     axes.legend(("this design", "dot", "f3"), ("90 % of draws", "square", "f0", {"opacity": 0.3}), *stalls)
     return axes.picture(f"{named(metric)} against {x_label}: from {nominal[0]:.3g} at {values[0]:.3g} to "

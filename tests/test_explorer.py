@@ -1109,6 +1109,22 @@ def test_a_sweep_draws_a_cliff_as_one(explorer):
     assert np.diff(points[steepest:steepest + 2, 0]) < 2 and "cannot drive" in explorer._picture
 
 
+def test_a_front_shows_what_has_a_place_on_its_axes(explorer):
+    """A buried wheel has no slip: its pin, its dot and its cross are left out."""
+    mud = {"frictional_modulus_kn_m_n2": 20.0, "cohesive_modulus_kn_m_n1": 0.0, "sinkage_exponent": 1.0}
+    explorer.set(view="optimise", front_x="slip", wheel_width_m=0.03, chassis_mass_kg=40.0, **mud)
+    explorer.load("front.csv", catalog.to_csv(rdk.random_designs(30, seed=3)))
+    explorer.pin()
+    explorer.settle()
+    buried = explorer.front.performance.buried
+    assert 0 < buried.sum() < 30 and len(dots(explorer)) == 30 - buried.sum()
+    explorer.pick(int(buried.argmax()))
+    explorer.pin()
+    explorer.settle()
+    assert np.isnan(explorer.result.slip)
+    sound(explorer._picture)
+
+
 @pytest.mark.parametrize("second", ["", "slope_deg"])
 def test_a_sweep_marks_a_design_without_a_limit_at_the_end(explorer, second):
     explorer.set(view="sweep", sweep_first="maximum_speed_m_s", sweep_second=second, maximum_speed_m_s=np.inf)
