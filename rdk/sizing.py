@@ -104,11 +104,11 @@ class _Search:
         return np.reshape(slacks, (len(slacks), *found.shape))
 
     def first(self, random, known=None):
-        """First generations: half in the light corner, half anywhere; one population a wheel count."""
+        """First generations: half in the light corner, half known or anywhere; one population a wheel count."""
         genes, corner = random.random((2, POPULATION, len(VARIABLES))), POPULATION // 2
         light_corner(genes[:, :corner])
         if known is not None:
-            genes[:, :min(corner, len(known))] = known[:corner]
+            genes[:, corner:corner + len(known)] = known[:POPULATION - corner]
         genes[..., WHEELS] = [[0], [1]]
         both = decode(genes[:, 0], self.bounds).wheel_count
         return genes if both[0] != both[1] else genes[:1]
@@ -217,7 +217,6 @@ class Sizing(Shown):
     ----------
     design : Design
         Where nothing meets the demands (or the confidence), the nearest miss.
-    performance : Performance
     message : str
         Empty, or which demands conflict, which confidence is out of reach, or that the search was stopped.
     binding : tuple of str
@@ -261,19 +260,18 @@ class Sizing(Shown):
         nominal values. inf: then nothing meets the demands any more. NaN: a flag, which has no unit.
         """
         search = dataclasses.replace(self.search, confidence=None)
-        base = _best(search, self.population) if self.search.confidence else getattr(self.performance, search.minimise)
-        prices = []
-        for i, (demand, scale) in enumerate(zip(search.demands, search.scales)):
-            if isinstance(getattr(self.performance, demand.field), bool):
-                prices.append((math.inf, math.nan))
-                continue
-            step = PRICE_STEP * scale
-            harder = Demand(demand.field, demand.sign, demand.limit + step * (1 if demand.sign == ">=" else -1))
-            moved = dataclasses.replace(search, demands=search.demands[:i] + (harder,) + search.demands[i + 1:])
-            prices.append((_best(moved, self.population), step))
-        frame, best = self.demands, min(base, *(found for found, _ in prices))   # what meets more meets this too
-        unit = "kg" if search.minimise.endswith("_kg") else search.minimise
-        frame[f"{unit}_per_unit"] = [(found - best) / step for found, step in prices]
+        steps = PRICE_STEP * search.scales
+        base, known = _best(search, self.population)     # as long a search as each that it is compared with
+        found = np.full(len(steps), np.inf)
+        for i in np.flatnonzero(~search.flags):
+            demand = search.demands[i]
+            limit = demand.limit + steps[i] * (1 if demand.sign == ">=" else -1)
+            harder = (*search.demands[:i], demand._replace(limit=limit), *search.demands[i + 1:])
+            found[i], _ = _best(dataclasses.replace(search, demands=harder), known)
+        least = min([base, *found])                      # what meets more meets this too
+        costs = found - least if least < math.inf else found
+        frame, unit = self.demands, "kg" if search.minimise.endswith("_kg") else search.minimise
+        frame[f"{unit}_per_unit"] = np.where(search.flags, np.nan, costs / steps)
         return frame
 
     @cached_property
@@ -302,20 +300,20 @@ class Sizing(Shown):
 
 
 def _best(search, known):
-    """Least objective that a search finds; inf where nothing meets the demands."""
-    *_, (_, objective, violation) = search.stages(known)
-    return min(np.where(violation[:, 0] > 0, np.inf, objective[:, 0]))
+    """Least objective that a search finds, inf where nothing meets the demands, and the population that has it."""
+    *_, (genes, objective, violation) = search.stages(known)
+    least = np.where(violation[:, 0] > 0, np.inf, objective[:, 0])
+    return least.min(), genes[least.argmin()]
 
 
 def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confidence: float | None = None,
          model: Model = Model(), bounds: dict | None = None, seed: int = 0, on_generation=None) -> Sizing:
-    """The lightest rover that meets a list of demands on a mission.
+    """The lightest rover that meets a list of demands on a mission; same seed, same rover.
 
     Parameters
     ----------
     scenario : Scenario
-        A single mission; its traverse limit holds, its `problem` is not read. A required obstacle height above 0 is one
-        demand more.
+        A single mission; its `problem` is not read. A required obstacle height above 0 is one demand more.
     demands : sequence of (str, str, float)
         Such as ("range_km", ">=", 30), on any Performance field; a flag is 1 (or True) or 0.
     minimise : str
@@ -323,11 +321,8 @@ def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confid
     confidence : float, optional
         Joint share of draws of the uncertain inputs in which all demands must hold, between 0 and 1; they hold at the
         nominal values too.
-    model : Model
     bounds : dict of str to (float, float), optional
         Limits of some variables in place of those in DESIGN_SPACE.
-    seed : int
-        Same seed, same rover.
     on_generation : callable, optional
         Called with a `Progress` after each generation; when it returns True the search stops there.
 

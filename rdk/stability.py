@@ -1,12 +1,11 @@
 """How a rover stands on a slope: the load on each axle, the centre of mass, and where it tips over.
 
-The rover drives straight up or down (x runs uphill from the middle of the wheelbase, h from the ground), slowly enough
-that nothing accelerates, and each wheel pulls in proportion to its load: N tan(slope). Then the force of the ground on
-each wheel is vertical, and lever rules over the horizontal distances x cos(slope) - h sin(slope) suffice.
+The rover drives straight up or down (x runs uphill from the middle of the wheelbase, h from the ground), and each wheel
+pulls in proportion to its load: N tan(slope). Then the force of the ground on each wheel is vertical, and lever rules
+over the horizontal distances x cos(slope) - h sin(slope) suffice.
 
 Limits: rigid wheels on a plane; no soft suspension, no sinkage that tilts the body, no acceleration. Track and centre
-of mass are orders of magnitude read off published envelopes, good to about a quarter; outside rovers of 5 to 50 kg they
-extrapolate.
+of mass are orders of magnitude, good to about a quarter; outside rovers of 5 to 50 kg they extrapolate.
 """
 from typing import NamedTuple
 

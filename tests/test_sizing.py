@@ -92,6 +92,12 @@ def test_prices_are_differences_of_two_sizings(mare):
     np.testing.assert_allclose(price["slope"], gained, atol=0.004)   # each search strays by some 0.02 % of 8.3 kg
 
 
+def test_prices_of_nothing_asked_and_of_what_nothing_meets(brisk):
+    assert len(rdk.size(MARE, ()).prices()) == 0
+    missed = rdk.size(MARE, [("slope_capability_deg", ">=", 50), ("range_km", ">=", 3)])
+    assert (missed.prices()["kg_per_unit"] == math.inf).all()
+
+
 def test_price_of_a_limit_that_cannot_move_is_infinite_and_a_flag_has_none(brisk):
     found = rdk.size(MARE, [("slope_capability_deg", ">=", 34.6), ("feasible", ">=", True)])
     frame = found.demands.prices()
