@@ -356,7 +356,7 @@ def test_a_random_walk_of_300_moves(explorer):
     assert min(done.values()) > 15, done
     view(explorer, "Mission log")
     explorer.page.wait_for_function("""() => location.search.slice(1) === JSON.parse(
-        document.querySelector('[data-state]').dataset.state).link""")
+        document.querySelector('[data-state]').dataset.state).t.share""")
     state = from_text(explorer.page.evaluate("location.search"))
     values = {name: float(box(explorer,
                               name).evaluate("e => e.value === 'none' ? Infinity : e.value")) / NUMBERS[name].factor

@@ -40,7 +40,7 @@ def made():
 def explorer(made):
     """The one explorer of this module, as it starts."""
     made.front, made._recipe, made._pins = None, None, []
-    made._notice = made._drawer = ("", "")
+    made._notice, made._drawer, made._reading = ("", ""), ("", ""), ""
     made.set(rover="Rashid-1", mission=MARE, preset="paper", view="log", live=False, population=50, generations=60,
              why_metric="range_km", baseline="MoonRanger", sweep_first="wheel_radius_m", sweep_second="",
              sweep_metric="range_km",
@@ -1048,6 +1048,8 @@ def test_the_python_reproduces_what_is_shown(explorer, script):
         explorer.optimise(wait=True)
     explorer.set(latitude_deg=33)                        # a front is still that of the mission before
     events(explorer, ["do", "python"])
+    explorer.set(payload_power_w=3.5)                    # what is open follows the state
+    explorer.settle()
     code, space = explorer.python(), {}
     assert html.escape(code) in explorer.parts["drawer"].value
     exec(code, space)

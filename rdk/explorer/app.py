@@ -75,7 +75,7 @@ class Explorer(State):
         self.error, self.intervals, self.binding = "", None, None
         self._thread, self._stop, self._progress, self._status = None, threading.Event(), (0, 1), ""
         self._heard, self._size, self._drawer, self._picture, self._shown = 0, (600, 380), ("", ""), "", ""
-        self._table, self._odds, self._band = [], (None, None), (None, None)
+        self._table, self._odds, self._band, self._reading = [], (None, None), (None, None), ""
         self._app = os.environ.get("SERVER_SOFTWARE", "").startswith("voila")
         super().__init__(catalog.rover(rover) if isinstance(rover, str) else rover,
                          catalog.scenario(scenario) if isinstance(scenario, str) else scenario, model)
@@ -147,7 +147,7 @@ class Explorer(State):
         if verb in do:
             do[verb]()
         else:
-            self._drawer = self._read(verb, about)
+            self._reading, self._drawer = verb, self._read(verb, about)
 
     def _raise(self, name):
         """A lever: one input raised by a tenth."""
@@ -277,7 +277,7 @@ class Explorer(State):
     def _tell(self, heard, busy=False):
         """Send the values of all inputs and the small texts to the page; `heard` is the last event that is answered."""
         with self._lock:
-            now, base, m, link, running = self.state, self._values(*self._base), self.scenario, self.link, self._thread
+            now, base, m, running = self.state, self._values(*self._base), self.scenario, self._thread
             numbers = {}
             for name, f in NUMBERS.items():
                 first = base.get(name, now[name])
@@ -285,13 +285,15 @@ class Explorer(State):
                                  int(now[name] != first))
             route = "no limit" if math.isinf(m.traverse_limit_km) else f"{m.traverse_limit_km:g} km"
             texts = {"mission": f"Mission: {place(m.latitude_deg)}, {m.slope_deg:g}°", "status": self._status,
-                     "share": link, "summary": f"{place(m.latitude_deg)}, {m.duration_earth_days:g} days from "
+                     "share": self.link, "summary": f"{place(m.latitude_deg)}, {m.duration_earth_days:g} days from "
                      f"{m.start_utc or 'sunrise'}, {m.slope_deg:g}° in {m.soil.name}; drives {100 * m.duty_cycle:g} % "
                      f"of the time, route {route}."}
             told = {"ack": heard, "v": numbers, "c": {name: str(now[name]) for name in (*self.menus, "start_utc")},
                     "t": texts, "off": {"undo": not self._past, "redo": not self._future, "run": bool(running),
                                         "lightest": bool(running), "cancel": not running},
-                    "p": (*self._progress, bool(running)), "link": link, "share": link, "busy": busy}
+                    "p": (*self._progress, bool(running)), "busy": busy}
+            if self._reading in ("python", "differences"):           # they follow the state
+                self._drawer = self._read(self._reading, "")
             (role, notice), drawer = self._notice, self._drawer
         said = f'<div><div role="{role}">{html.escape(notice)}</div></div>' if notice else ""
         self.parts["drawer"].value = said + page.drawer(*drawer)

@@ -38,7 +38,7 @@ const apply = () => {
     one('.rdk-picture').classList.toggle('rdk-waiting', d.busy || acked < last);
     setTimeout(measure, 60);                             /* the room for the picture may have changed */
     const bar = one('progress'); bar.max = d.p[1]; bar.value = d.p[0]; bar.hidden = !d.p[2];
-    if (app) { link = d.link; naming ||= setTimeout(name, 100); }       /* browsers ignore calls that come faster */
+    if (app) { link = d.t.share; naming ||= setTimeout(name, 100); }       /* browsers ignore calls that come faster */
 };
 const name = () => { naming = 0; history.replaceState(null, '', location.pathname + (link ? '?' + link : '')); };
 const deliver = () => { const a = one('a[data-deliver]'); if (a) { a.removeAttribute('data-deliver'); a.click(); } };
@@ -68,7 +68,7 @@ root.addEventListener('click', e => {
     else if (b.dataset.tab) { tab = b.dataset.tab; pages(); }
     else if (b.dataset.js === 'open') one('[type=file]').click();
     else if (b.dataset.js === 'skip') { const v = one('.rdk-say1'); v.tabIndex = -1; v.focus(); }
-    else if (b.dataset.js === 'copy') { const state = JSON.parse(seen).share;
+    else if (b.dataset.js === 'copy') { const state = JSON.parse(seen).t.share;
         copy(app ? location.origin + location.pathname + '?' + state : state); send('do', 'copied'); } });
 root.addEventListener('keydown', e => { const t = e.target;
     if (e.key === 'Escape') all('details[open]').forEach(d => { if (d.contains(t)) { d.open = false;
