@@ -83,14 +83,13 @@ def decode(genes: np.ndarray, bounds: dict | None = None) -> Design:
 
     Every design that the optimiser sees can be built: 4 or 6 wheels, a whole number of grousers.
     """
-    low, high = _limits(bounds)
-    values = {}
-    for (name, variable), gene, a, b in zip(DESIGN_SPACE.items(), np.asarray(genes, float).T, low, high):
+    genes, values = check("genes", genes), {}
+    for (name, variable), gene, a, b in zip(DESIGN_SPACE.items(), genes.T, *_limits(bounds)):
         value = np.clip(a + gene * (b - a), a, b)
         if variable.kind == "choice":
             value = np.where(value < (variable.low + variable.high) / 2, variable.low, variable.high)
-        values[name] = np.rint(value) if variable.kind == "whole" else value
-    return Design(**values)
+        values[name] = value if variable.kind == "continuous" else np.rint(value).astype(int)
+    return Design.trusted(genes.shape[:-1], values)
 
 
 def encode(designs: Design, bounds: dict | None = None) -> np.ndarray:

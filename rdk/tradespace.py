@@ -234,8 +234,8 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
             history.append(archive[0])
             misses.append(mission.least)
         else:
-            opt = algorithm.opt
-            history.append(opt.get("F")[opt.get("feas").ravel()])
+            opt = algorithm.opt                          # where nothing is feasible, the one that comes nearest
+            history.append(opt.get("F")[:len(opt) * np.all(opt[0].feas)])
         if on_generation is not None:
             stopped = bool(on_generation(Progress(len(history), generations, so_far)))
         if until and converged():

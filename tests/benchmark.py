@@ -80,9 +80,9 @@ def memory():
 
 def counted(function, counts, key, lanes):
     """`function`, adding the number of lanes of each call to `counts[key]`."""
-    def wrapper(*arguments):
+    def wrapper(*arguments, **options):
         counts[key] += lanes(arguments)
-        return function(*arguments)
+        return function(*arguments, **options)
     return wrapper
 
 
@@ -136,7 +136,7 @@ def fixed_and_hourly():
 def searched(scenario, seed):
     """Seconds of processor time of a front, and all the designs that it evaluated, as dictionaries."""
     kept, seen = tradespace.evaluate, []
-    tradespace.evaluate = lambda designs, *rest: seen.append(designs) or kept(designs, *rest)
+    tradespace.evaluate = lambda designs, *rest, **more: seen.append(designs) or kept(designs, *rest, **more)
     try:
         seconds = milliseconds(lambda: rdk.pareto_front(scenario, seed=seed)) / 1e3
     finally:
@@ -164,7 +164,7 @@ def trade_space():
     print(f"{'median ratio':28}{statistics.median(ratios):>32.0f}")
 
     known, kept = rdk.evaluate(rdk.random_designs(50, seed=0), mare), tradespace.evaluate
-    tradespace.evaluate = lambda designs, *rest: known if len(designs) == 50 else kept(designs, *rest)
+    tradespace.evaluate = lambda designs, *rest, **more: known if len(designs) == 50 else kept(designs, *rest, **more)
     try:
         free = milliseconds(lambda: rdk.pareto_front(mare, seed=0))
     finally:
