@@ -351,16 +351,13 @@ def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confid
     if scenario.required_obstacle_height_m > 0:
         asked += (Demand("obstacle_capability_m", ">=", scenario.required_obstacle_height_m),)
     search = _Search(scenario, asked, minimise, confidence, model, bounds, seed)
-    done, stopped = 0, False
-    for genes, objective, violation in search.stages():
-        done += 1
+    for done, (genes, objective, violation) in enumerate(search.stages(), 1):
         near = violation <= violation.min() + (NEARLY if confidence and violation.min() > 0 else 0)
         best, which = np.unravel_index(np.where(near, objective, np.inf).argmin(), near.shape)
-        if on_generation is not None and on_generation(Progress(
-                done, search.generations, decode(genes[best, [which]], bounds)[0])):
-            stopped = True
+        design = decode(genes[best, [which]], bounds)[0]
+        stopped = on_generation is not None and on_generation(Progress(done, search.generations, design))
+        if stopped:
             break
-    design = decode(genes[best, [which]], bounds)[0]
     found = Sizing(design, evaluate(design, scenario, model=model), "", search, genes[best])
     message = (f"stopped after generation {done} of {search.generations}" if stopped
                else _conflict(found) if violation.min() > 0 else "")
