@@ -18,7 +18,7 @@ import ipywidgets as W
 import numpy as np
 
 from .. import catalog, explain
-from ..design import Model
+from ..design import Model, Problem
 from ..mission import evaluate
 from ..rover_picture import rover_picture
 from ..sampling import intervals
@@ -26,7 +26,7 @@ from ..sizing import size
 from ..tradespace import pareto_front
 from . import answers, page
 from .inputs import DESIGN, METRICS, NUMBERS, ODDS, check, label, place
-from .state import PINS, State, plain
+from .state import PINS, State
 from .worker import Refresher
 
 LIVE = 40, 24                                            # population and generations of a live front from nothing
@@ -239,8 +239,8 @@ class Explorer(State):
         if view == "optimise" and answer.now["live"] and (
                 self._recipe is not None or not answers.fits(self.front, answer.scenario, answer.model)):
             self.front, self._recipe = pareto_front(    # small and warm-started, to follow a slider: less complete
-                plain(answer.scenario), population=LIVE[0], generations=LIVE[1] // (1 if self.front is None else 2),
-                seed=1, start=self.front, model=answer.model, warn=False), None
+                answer.scenario.replace(problem=Problem()), population=LIVE[0], seed=1, start=self.front, warn=False,
+                generations=LIVE[1] // (1 if self.front is None else 2), model=answer.model), None
         names = [view] + (["mass" if view == "log" else "log"] if width >= WIDE else [])
         answer = answer._replace(front=self.front, odds=self._odds, band=self._band)
         size = (width - 14 * (len(names) - 1)) // len(names), height
@@ -309,15 +309,14 @@ class Explorer(State):
 
     def optimise(self, wait=False):
         """Search in the background for the mission as it stands; with `wait`, return when the search has ended."""
-        (_, scenario, model), problem = self._now, self._problem()
+        problem = self._problem()
 
         def take(front):
             self.front = front
             self._recipe = {**problem, "generations": len(front.objective_history)}      # fewer where it was cancelled
             return front.message or f"done: {len(front)} designs after {problem['generations']} generations"
 
-        self._begin(take, "generation {} of {}", wait, pareto_front, plain(scenario), model=model, warn=False,
-                    **problem)
+        self._begin(take, "generation {} of {}", wait, pareto_front, warn=False, **problem)
 
     def lightest(self, wait=False):
         """Put the lightest rover that meets the demands on the sliders; found in the background by `rdk.size`."""
@@ -329,13 +328,12 @@ class Explorer(State):
             self._notice = ("alert" if found.message else "status", said)
             return said
 
-        _, scenario, model = self._now
-        self._begin(take, "looking for the lightest rover", wait, size, plain(scenario),
-                    answers.asked(scenario.problem.constraints), model=model)
+        wanted = answers.asked(self.scenario.problem.constraints)
+        self._begin(take, "looking for the lightest rover", wait, size, wanted)
 
     def _begin(self, take, words, wait, search, *given, **options):
         """Start a search in a thread of its own, unless one is under way; `take` uses what it found, and says so."""
-        drawn = time.monotonic()
+        drawn, (_, scenario, model) = time.monotonic(), self._now
 
         def follow(progress):
             nonlocal drawn
@@ -349,15 +347,16 @@ class Explorer(State):
             return self._stop.is_set() or not threading.main_thread().is_alive()     # or the program is ending
 
         def work():
+            posed = scenario.replace(problem=Problem())  # a search keeps the range limit that the slider shows
             try:
-                found = search(*given, on_generation=follow, **options)
+                found = search(posed, *given, model=model, on_generation=follow, **options)
                 with self._lock:
-                    self._status = take(found)
+                    said = take(found)
             except Exception as error:
-                self._status = f"the search failed: {error}"
-                self._notice = ("alert", self._status)
+                said = f"the search failed: {error}"
+                self._notice = ("alert", said)
             with self._lock:
-                self._thread = None
+                self._thread, self._status = None, said
                 self._poke()
 
         with self._lock:

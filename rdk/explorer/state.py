@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import functools
 import math
 import threading
@@ -291,7 +290,7 @@ class State:
         with self._step():
             if design.shape:
                 note += f": {len(design)} designs, shown under Optimise; the first is on the sliders"
-                where = plain(mission or self.scenario)
+                where = (mission or self.scenario).replace(problem=Problem())
                 design = design.replace(**{n: np.clip(getattr(design, n), v.low, v.high)
                                            for n, v in DESIGN_SPACE.items()})
                 self.front, self._recipe = Front(design, evaluate(design, where, model=self.model), where, self.model,
@@ -321,8 +320,3 @@ class State:
             over = {name: values.tolist() for name, values in answers.swept_over(self._chosen).items()}
             calls = [f"curve = rdk.sweep(design, mission, {over!r}, model=model)"]
         return explain.as_python(design, scenario, model, *calls, **more)
-
-
-def plain(scenario):
-    """The mission without its problem: a search keeps the range limit that the slider shows."""
-    return dataclasses.replace(scenario, problem=Problem())
