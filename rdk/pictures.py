@@ -379,6 +379,8 @@ def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, si
 
 def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
     """One metric over two variables: shades, labelled contours, hatching where the rover cannot drive, this design."""
+    if not np.isfinite(grid).any():
+        return message(size, f"{label(metric)[0]} has no value at any {x_label} and {y_label}: the wheel is buried")
     from contourpy import contour_generator
     axes = Axes(size, (float(xs[0]), float(xs[-1])), (float(ys[0]), float(ys[-1])), top=42, right=86)
     low, high = span(grid, room=0)

@@ -524,6 +524,9 @@ def test_a_buried_rover_is_said_to_be_so():
         assert explorer.binding.key == "soil" and "none to none" in shown(explorer) and "Sinks" in explorer.text()
         if view != "optimise":
             sound(explorer._picture)
+    explorer.set(view="sweep", sweep_first="avionics_power_w", sweep_second="hub_no_load_speed_rad_s")
+    explorer.settle()
+    assert "the wheel is buried" in sound(explorer._picture)
 
 
 def test_what_fails_is_marked_on_the_drawing():
