@@ -317,6 +317,7 @@ class Attribution(Shown):
     contributions: dict
     performance: Performance
     baseline_performance: Performance
+    mixtures: tuple = ()                                 # of what, and the metrics' values: `known` of a later call
 
     def to_frame(self):
         """A pandas DataFrame: one row a design variable, one column a metric."""
@@ -329,13 +330,14 @@ class Attribution(Shown):
 
 
 def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: Model = Model(),
-                metrics: Sequence = METRICS) -> Attribution:
+                metrics: Sequence = METRICS, known: Attribution | None = None) -> Attribution:
     """Exact Shapley values of each metric's difference between two single designs, over the eleven design variables.
 
     Every mixture of the two designs is evaluated, 2^k of them in one call where k variables differ, and each variable
     is credited with its mean marginal effect over all orders in which the variables could change (Shapley 1953). A
     variable with one value in both designs has no effect and no share. Metrics that are not finite in all mixtures are
-    left out; true/false ones count as 1 and 0. Fewer `metrics` take less time.
+    left out; true/false ones count as 1 and 0. Fewer `metrics` take less time; mixtures that a `known` attribution
+    has, of the same baseline, mission, model and metrics, are not evaluated again.
 
     Examples
     --------
@@ -346,11 +348,17 @@ def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: 
     True
     """
     single(design=design, baseline=baseline, scenario=scenario, model=model)
+    require(**{} if known is None else {"known": (known, Attribution)})
     differ = np.array([getattr(design, name) != getattr(baseline, name) for name in DESIGN_SPACE])
     count = int(differ.sum())
     takes = np.zeros((2**count, len(differ)), bool)                  # (mixtures, variables): from the design?
     takes[:, differ] = np.arange(2**count)[:, None] >> np.arange(count) & 1
-    result = evaluate(Design(**{name: np.where(takes[:, i], getattr(design, name), getattr(baseline, name))
+    task, old, fresh = (baseline, scenario, model, tuple(metrics), differ.tolist()), {}, np.ones(len(takes), bool)
+    if known is not None and known.mixtures[1] == task:              # without a variable that moved: the same mixture
+        moved = [getattr(design, name) != getattr(known.mixtures[0], name) for name in DESIGN_SPACE]
+        old, fresh = known.mixtures[2], takes[:, moved].any(1)
+        fresh[[0, -1]] = True
+    result = evaluate(Design(**{name: np.where(takes[fresh, i], getattr(design, name), getattr(baseline, name))
                                 for i, name in enumerate(DESIGN_SPACE)}), scenario, model=model)
     size = takes.sum(1)
     share = np.array([math.factorial(k) * math.factorial(count - 1 - k) / math.factorial(count) for k in range(count)])
@@ -358,9 +366,8 @@ def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: 
     weights = np.zeros(takes.T.shape)
     if count:
         weights[differ] = np.where(takes.T[differ], share[size - 1], -share[np.minimum(size, count - 1)])
-    contributions = {}
+    values = {name: old[name].copy() if old else np.empty(len(takes)) for name in metrics}
     for name in metrics:
-        values = np.asarray(getattr(result, name), float)
-        if np.isfinite(values).all():
-            contributions[name] = weights @ values
-    return Attribution(contributions, result[-1], result[0])
+        values[name][fresh] = getattr(result, name)
+    contributions = {name: weights @ each for name, each in values.items() if np.isfinite(each).all()}
+    return Attribution(contributions, result[-1], result[0], (design, task, values))

@@ -638,6 +638,28 @@ def test_variables_that_do_the_same_get_the_same():
         np.testing.assert_allclose(shares[name], expected, rtol=1e-10)         # rounding of 2,048 terms
 
 
+def test_a_known_attribution_saves_the_mixtures_that_both_have(why, monkeypatch):
+    counts, real = [], sampling.evaluate
+
+    def counted(design, *given, **options):
+        counts.append(len(design))
+        return real(design, *given, **options)
+
+    monkeypatch.setattr(sampling, "evaluate", counted)
+    wider = RASHID.replace(wheel_width_m=0.11)
+    near, alone = (rdk.attribution(wider, TENACIOUS, MARE, known=known) for known in (why, None))
+    assert counts[0] == counts[1] // 2 + 1               # the half with the moved variable, and the baseline itself
+    for name, shares in alone.contributions.items():     # to the rounding of sums and of a lane's place in its block
+        np.testing.assert_allclose(near.contributions[name], shares, rtol=1e-12, atol=1e-12)
+    assert near.performance.range_km == alone.performance.range_km
+    # of another mission, or where other variables differ, nothing is taken over
+    for design, mission in (wider, MARE.replace(slope_deg=3.0)), (TENACIOUS.replace(wheel_width_m=0.11), MARE):
+        again, plain = (rdk.attribution(design, TENACIOUS, mission, known=known) for known in (why, None))
+        np.testing.assert_allclose(again.contributions["range_km"], plain.contributions["range_km"], rtol=1e-12)
+    with pytest.raises(TypeError, match="known must be an? Attribution"):
+        rdk.attribution(wider, TENACIOUS, MARE, known="x")
+
+
 def test_attribution_equals_the_mean_over_all_orders():
     names = ["wheel_radius_m", "grouser_count", "chassis_mass_kg", "solar_area_m2"]
     far = dict(wheel_radius_m=0.05, grouser_count=2, chassis_mass_kg=20.0, solar_area_m2=0.12)

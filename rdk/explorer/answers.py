@@ -16,10 +16,10 @@ from .page import card, verdict
 
 BAND_DRAWS, CURVE, MAP = 256, 61, 25                     # of the readings' draws the first; points of a sweep
 Answer = namedtuple("Answer", "now design scenario model result binding levers before ghosts reference spans sure "
-                    "front odds band", defaults=(False, None, (None, None), (None, None)))
+                    "front odds band kept", defaults=(False, None, (None, None), (None, None), None))
 """What the page shows of one state: inputs `now`, the result `before` the last change, `ghosts` as (letter, class,
 result) of pinned designs, the `reference` of "why"; `spans` are intervals, older ones unless `sure`, and `odds` and
-`band` are pairs whose first part says what they are of."""
+`band` are pairs whose first part says what they are of; `kept` is what the last picture has left for the next one."""
 
 
 def words(value, digits, unit="", sign=""):
@@ -142,7 +142,8 @@ def rovers(a, *names):
 def why(a, size):
     """What each variable contributes to the difference from a reference."""
     metric = a.now["why_metric"]
-    found = attribution(a.design, a.reference, a.scenario, model=a.model, metrics=(metric,))
+    found = a.kept["why"] = attribution(a.design, a.reference, a.scenario, model=a.model, metrics=(metric,),
+                                        known=a.kept.get("why"))
     if metric not in found.contributions:
         return pictures.message(size, f"{label(metric)[0]} has no value in some mixture of the two designs (a buried "
                                 "wheel), so that its difference cannot be shared out. Choose another metric.")

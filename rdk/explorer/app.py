@@ -75,7 +75,7 @@ class Explorer(State):
         self.error, self.intervals, self.binding = "", None, None
         self._thread, self._stop, self._progress, self._status = None, threading.Event(), (0, 1), ""
         self._heard, self._size, self._drawer, self._picture, self._shown = 0, (600, 380), ("", ""), "", ""
-        self._table, self._odds, self._band, self._reading = [], (None, None), (None, None), ""
+        self._table, self._odds, self._band, self._reading, self._kept = [], (None, None), (None, None), "", {}
         self._app = os.environ.get("SERVER_SOFTWARE", "").startswith("voila")
         super().__init__(catalog.rover(rover) if isinstance(rover, str) else rover,
                          catalog.scenario(scenario) if isinstance(scenario, str) else scenario, model)
@@ -242,7 +242,7 @@ class Explorer(State):
                 answer.scenario.replace(problem=Problem()), population=LIVE[0], seed=1, start=self.front, warn=False,
                 generations=LIVE[1] // (1 if self.front is None else 2), model=answer.model), None
         names = [view] + (["mass" if view == "log" else "log"] if width >= WIDE else [])
-        answer = answer._replace(front=self.front, odds=self._odds, band=self._band)
+        answer = answer._replace(front=self.front, odds=self._odds, band=self._band, kept=self._kept)
         size = (width - 14 * (len(names) - 1)) // len(names), height
         drawn = [answers.PICTURES[name](answer, size) for name in names]
         self._picture, self._shown = drawn[0], view
