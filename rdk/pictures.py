@@ -341,7 +341,7 @@ def why(metric, names, values, before, after, baseline, size=SIZE):
     edges = before + np.cumsum([0.0, *(step for _, step in steps)])
     first, last = ((name, value, value, f"{value:.4g}", [("", "c3", value)])
                    for name, value in ((baseline, before), ("this design", after)))
-    rows = [(name, a, b, f"{step:+.3g}", []) for (name, step), a, b in zip(steps, edges, edges[1:])]
+    rows = [(name, a, b, f"{step:+.3g}".replace("-", "−"), []) for (name, step), a, b in zip(steps, edges, edges[1:])]
     axes = bars(size, 40, [first, *rows, last], named(metric), joined=True)
     said = f"{words}: {baseline} {before:.4g} to this design {after:.4g} {unit}"
     axes.say(8, 14, said if 7 * len(said) < size[0] else f"{words}: from {before:.4g} to {after:.4g} {unit}", "b")

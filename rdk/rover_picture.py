@@ -93,8 +93,8 @@ def rover_picture(design, performance=None, scenario=None, *, width=300, scale=N
         parts.append(box("soil a" + tone["obstacle"], reach + 0.01, 0, 0.12, obstacle))
     if design.wheel_count == 6:
         hub, pivot = r - sunk, floor + tall / 3
-        parts.append(element("path", "l c3", d=f"M{-base / 2} {hub}L{base / 8} {pivot}L{base / 2} {hub}"
-                                               f"M{base / 8} {pivot}L0 {hub}"))
+        parts.append(element("path", "l c3", d=f"M{-base / 2:.4f} {hub:.4f}L{base / 8:.4f} {pivot:.4f}"
+                                               f"L{base / 2:.4f} {hub:.4f}M{base / 8:.4f} {pivot:.4f}L0 {hub:.4f}"))
     parts += [_wheel(design, x, r - sunk, (4.5 if tone["hubs"] else 3.0) / scale, tone) for x in wheels.tolist()]
     parts.append(box("o" + tone["body"], -length / 2, floor, length, tall, rx=4 / scale))
     if p is not None:                                    # boxes as large as their share of the mass
@@ -103,9 +103,9 @@ def rover_picture(design, performance=None, scenario=None, *, width=300, scale=N
             high = 0.8 * tall * float(np.clip(np.sqrt(kg / mass), 0.12, 0.7)) * (kg > 0)
             parts.append(box(cls, length * at, floor + 0.08 * tall, length * 0.4, high,
                              f"<title>{name} {kg:.2f} kg</title>", opacity=0.75))
-    parts.append(element("path", "c3", d=f"M0 {roof}V{middle}"))
-    array = element("path", "l w c0" + tone["array"], d="M{} {}L{} {}".format(*tips[0], *tips[1]))
-    scene = placed(left, level, scale, -1, element("g", "", "".join(parts), transform=f"rotate({slope})"), array)
+    parts.append(element("path", "c3", d=f"M0 {roof:.4f}V{middle:.4f}"))
+    array = element("path", "l w c0" + tone["array"], d="M{:.4f} {:.4f}L{:.4f} {:.4f}".format(*tips[0], *tips[1]))
+    scene = placed(left, level, scale, -1, element("g", "", "".join(parts), transform=f"rotate({slope:g})"), array)
     scene = element("svg", "", scene, width=width, height=float(height))     # cuts off the soil beyond
     sheet = placed(width - 14, 26, scale, 1, box("n a", -A4_M[0], 0, *A4_M))
     top, wide = height + 16, side * np.cos(lean)
