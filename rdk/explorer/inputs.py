@@ -107,8 +107,6 @@ VIEWS = {"log": "Mission log", "mass": "Mass", "wheel": "Wheel", "fleet": "Fleet
 OWN, START, NONE, ODDS = "your own", "the design at the start", "none", "odds"
 SKY = "site", "site_height_m", "start_utc"
 SCRIPTS = ("the readings", "why", "the sweep", "the front")
-RESTORED = (*DESIGN, "wheel_count", *COEFFICIENTS, "preset", *MISSION, *SKY, *SOIL, *DEMANDS, *GOALS)
-"""What undo brings back and a link carries."""
 
 
 def title(name):
