@@ -7,7 +7,9 @@ import sys
 import tomllib
 from pathlib import Path
 
+import nbformat
 import pytest
+from nbformat.sign import NotebookNotary
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -51,7 +53,10 @@ def test_post_build_runs(tmp_path):
     script = BINDER / "postBuild"
     assert os.access(script, os.X_OK) and b"\r" not in script.read_bytes()
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-    subprocess.run([script], cwd=REPO, env={**os.environ, "PATH": path}, check=True)
+    subprocess.run([script], cwd=REPO, env={**os.environ, "PATH": path, "JUPYTER_DATA_DIR": str(tmp_path)}, check=True)
+    notary = NotebookNotary(data_dir=str(tmp_path))
+    for notebook in (REPO / "notebooks").glob("*.ipynb"):
+        assert notary.check_signature(nbformat.read(notebook, as_version=4)), notebook.name
 
 
 def test_every_run_time_dependency_is_pinned_within_its_bounds():
