@@ -22,6 +22,14 @@ CUBE = tuple(name for name, v in DESIGN_SPACE.items() if v.kind == "continuous" 
 """The eight variables of the rediscovery distance: continuous, and read by some sub-model."""
 
 
+def rover_row(name: str) -> dict[str, str]:
+    """The row of a rover's design vector in `rovers.csv`, as text: published mass, payload, sources."""
+    rows = {row["rover"]: row for row in catalog.rows("rovers.csv") if row["use"] == "design vector"}
+    if name not in rows:
+        raise unknown("no rover", name, rows)
+    return rows[name]
+
+
 def unit_cube(designs: Design) -> np.ndarray:
     """Designs as points of the eight-dimensional unit cube of `CUBE`, shape (n, 8)."""
     return np.stack(np.broadcast_arrays(*(np.atleast_1d(place(designs, name)) for name in CUBE)), axis=1)
@@ -40,7 +48,7 @@ class Target:
     def of(cls, name):
         if name not in list(REDISCOVERED):
             raise unknown("the check has no rover", name, list(REDISCOVERED))
-        design, payload = catalog.rover(name), float(catalog.rover_row(name)["payload_mass_kg"])
+        design, payload = catalog.rover(name), float(rover_row(name)["payload_mass_kg"])
         scenario = catalog.scenario(REDISCOVERED[name]).replace(payload_mass_kg=payload)
         performance = evaluate(design, scenario)
         return cls(name, scenario, design, performance, 1.10 * performance.total_mass_kg)
@@ -93,7 +101,7 @@ def _search(job):
 
 def _found(target, fronts):
     """The row of one rover at one generation."""
-    generation, own_row = len(fronts[0].objective_history), catalog.rover_row(target.name)
+    generation, own_row = len(fronts[0].objective_history), rover_row(target.name)
     fronts = [front for front in fronts if len(front)]
     row = dict(rover=target.name, scenario=target.scenario.name, in_class=own_row["in_class"] == "True",
                generations=generation, mass_kg=target.performance.total_mass_kg, ceiling_kg=target.ceiling_kg,

@@ -159,12 +159,8 @@ def problem(name: str) -> Problem:
 
 def rover(name: str) -> Design:
     """The design of a published rover, one of `rover_names()`; `data/rovers.csv` says what its sources leave open."""
-    return _read(Design, rover_row(name), tuple(DESIGN_SPACE), "rovers.csv", name)
-
-
-def rover_row(name: str) -> dict:
-    """The full row of a published rover's design vector: published mass, payload, sources."""
-    return dict(_pick("rover", name, _named("rovers.csv", "rover", use="design vector")))
+    row = _pick("rover", name, _named("rovers.csv", "rover", use="design vector"))
+    return _read(Design, row, tuple(DESIGN_SPACE), "rovers.csv", name)
 
 
 @functools.cache

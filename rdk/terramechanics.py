@@ -239,16 +239,6 @@ def grouser_lift(wheel: Wheel, grouser_lift_cap: ArrayLike = 0.6) -> float | np.
                           grouser_lift_cap)
 
 
-def compaction_resistance(wheel: Wheel, soil: Soil, sinkage_m: ArrayLike) -> float | np.ndarray:
-    """Force in newtons that compacting the rut costs, b (k_c / b + k_phi) z^(n+1) / (n+1), at sinkage z.
-
-    The work of Bekker's pressure down to that depth, per metre driven. A diagnostic: the drawbar pull contains it.
-    """
-    require(wheel=(wheel, Wheel), soil=(soil, Soil))
-    z, n = check("sinkage_m", sinkage_m, 0), soil.sinkage_exponent
-    return wheel.width_m * _k_eff(wheel, soil) * z ** (n + 1) / (n + 1)
-
-
 # ---- from records to lanes ------------------------------------------------------------------------------------
 
 def _k_eff(wheel, soil):

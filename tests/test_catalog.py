@@ -52,9 +52,8 @@ def test_values_are_those_of_the_files():
             scenario = rdk.scenario(row["scenario"])
             assert all(getattr(scenario, name) == float(row[name]) for name in catalog._SCENARIO)
             assert scenario.soil == rdk.soil(row["soil"]) and scenario.required_obstacle_height_m == 0
-    row = catalog.rover_row("CADRE-unit")
+    row, = (row for row in catalog.rows("rovers.csv") if row["rover"] == "CADRE-unit" and row["use"] == "design vector")
     assert all(getattr(rdk.rover("CADRE-unit"), name) == float(row[name]) for name in rdk.DESIGN_SPACE)
-    assert row["use"] == "design vector" and float(row["published_mass_kg"]) == 8.6
 
 
 def test_panels_are_tilted_towards_the_noon_sun():
@@ -324,7 +323,7 @@ def test_what_is_no_text_is_refused(read):
             read(text)
 
 
-@pytest.mark.parametrize("read", [rdk.rover, rdk.scenario, rdk.soil, rdk.skyline, catalog.rover_row])
+@pytest.mark.parametrize("read", [rdk.rover, rdk.scenario, rdk.soil, rdk.skyline])
 def test_a_list_of_names_is_no_name(read):
     with pytest.raises(ValueError, match=r"no (rover|scenario|soil|site) \['a'\]"):
         read(["a"])

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
+import on_site
 import rdk
 from rdk import route, sky, terrain
 from rdk.route import Way
@@ -70,16 +71,16 @@ def test_costs_broadcast():
 def test_rocks_are_counted_by_the_integral_of_their_area(diameter, k):
     q = 1.79 + 0.152 / k
     count = quad(lambda x: 4 * k * q * np.exp(-q * x) / (np.pi * x * x), diameter, np.inf, epsabs=0)[0]
-    np.testing.assert_allclose(route.rocks_per_m2(diameter, k), count, rtol=1e-7)
+    np.testing.assert_allclose(on_site.rocks_per_m2(diameter, k), count, rtol=1e-7)
 
 
 def test_rocks_and_detours_in_their_limits():
-    assert route.rocks_per_m2(0.1, 0.0) == 0 and route.detour_factor(0.05, 0.5, 0.0) == 1
-    counts = route.rocks_per_m2(np.array([[0.1], [0.2]]), np.array([0.005, 0.02, 0.1]))
+    assert on_site.rocks_per_m2(0.1, 0.0) == 0 and on_site.detour_factor(0.05, 0.5, 0.0) == 1
+    counts = on_site.rocks_per_m2(np.array([[0.1], [0.2]]), np.array([0.005, 0.02, 0.1]))
     assert counts.shape == (2, 3) and np.all(np.diff(counts, axis=1) > 0) and np.all(counts[1] < counts[0])
-    four, six = (route.detour_factor(ratio * 0.1, 0.5, 0.02) for ratio in (0.5, 1.25))
+    four, six = (on_site.detour_factor(ratio * 0.1, 0.5, 0.02) for ratio in (0.5, 1.25))
     assert four > six > 1                                # six wheels climb taller rocks
-    rocks = route.rocks_per_m2(0.1, 0.02)                # a swath of 0.5 m and the rock's 0.1, each costing as much
+    rocks = on_site.rocks_per_m2(0.1, 0.02)                # a swath of 0.5 m and the rock's 0.1, each costing as much
     np.testing.assert_allclose(four, 1 + rocks * 0.6 * 0.6, rtol=1e-12)
 
 
@@ -198,10 +199,10 @@ def test_bad_requests_are_refused(change, words):
     (lambda: route.per_metre("x", POLAR, 0.0), "design must be a Design"),
     (lambda: route.per_metre(ROVER, POLAR, "steep"), "slope_deg must be .*'steep'"),
     (lambda: route.cost(ROVER, "polar"), "scenario must be a Scenario"),
-    (lambda: route.rocks_per_m2(0.0, 0.1), "diameter_m must be positive"),
-    (lambda: route.rocks_per_m2(0.1, 1.5), "area_fraction must be at least 0 and at most 1"),
-    (lambda: route.detour_factor("x", 0.5, 0.1), "obstacle_m must be positive"),
-    (lambda: route.detour_factor(0.1, np.nan, 0.1), "width_m must be positive"),
+    (lambda: on_site.rocks_per_m2(0.0, 0.1), "diameter_m must be positive"),
+    (lambda: on_site.rocks_per_m2(0.1, 1.5), "area_fraction must be at least 0 and at most 1"),
+    (lambda: on_site.detour_factor("x", 0.5, 0.1), "obstacle_m must be positive"),
+    (lambda: on_site.detour_factor(0.1, np.nan, 0.1), "width_m must be positive"),
     (lambda: route.along("x", [[0, 0]]), "terrain must be a Terrain"),
     (lambda: route.along(level(), []), "cells must be rows"),
     (lambda: route.along(level(), [[0, 0], [6, 0]]), "cells must be rows and columns of the map"),

@@ -277,7 +277,7 @@ def test_distance_by_hand(found):
 def test_ceiling_holds_and_the_payload_is_the_rovers_own(found):
     for row in found[found.front_designs > 0].itertuples():
         scenario = dataclasses.replace(rdk.scenario(row.scenario), payload_mass_kg=float(
-            catalog.rover_row(row.rover)["payload_mass_kg"]))
+            rediscovery.rover_row(row.rover)["payload_mass_kg"]))
         assert rdk.evaluate(rdk.rover(row.rover), scenario).total_mass_kg == row.mass_kg
         assert rdk.evaluate(row.nearest, scenario).total_mass_kg <= row.ceiling_kg * (1 + 1e-12)
 

@@ -10,6 +10,8 @@ from scipy.optimize import brentq
 from rdk import catalog, power, route, sky
 from rdk.mission import evaluate
 
+from on_site import detour_factor
+
 from .judging import Exercise
 
 EXERCISES = {}
@@ -108,7 +110,7 @@ def _climb_wh(slope_deg=10.0, standing=False):
 
 
 def _rock_cover_pct(obstacle_m=0.05, longer=1.1):
-    return 100 * brentq(lambda k: route.detour_factor(obstacle_m, 0.5, k) - longer, 1e-4, 0.6)
+    return 100 * brentq(lambda k: detour_factor(obstacle_m, 0.5, k) - longer, 1e-4, 0.6)
 
 
 @cache
