@@ -15,14 +15,16 @@ import numpy as np
 import pandas as pd
 
 import rediscovery
-from rdk import catalog, rules, validation
+import rules
+import validation
+from rdk import catalog
 from rdk._fields import check
 from rdk.design import Model
 from rdk.mission import evaluate
 from rdk.sampling import random_designs
-from rdk.studies import fronts
 from rdk.terramechanics import OPTIONS, wheel_forces
 from rdk.tradespace import pareto_front
+from searches import fronts
 
 SHORT = {"mare": "equatorial_mare_traverse", "polar": "polar_prospecting", "crater": "crater_rim_survey",
          "highland": "highland_slope_capability"}

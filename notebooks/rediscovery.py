@@ -11,9 +11,9 @@ from rdk import catalog
 from rdk._fields import check, generator, listed, unknown, whole
 from rdk.design import DESIGN_SPACE, Design, Model, Scenario
 from rdk.mission import Performance, evaluate, mass_of
-from rdk.rules import place, require_table
 from rdk.sampling import decode, random_designs
 from rdk.tradespace import beaten, minimised, pareto_front
+from rules import place, require_table
 
 REDISCOVERED = {"Tenacious": "mare_micro", "CADRE-unit": "polar_micro", "Rashid-1": "mare_micro",
                 "Pragyan": "polar_micro", "MoonRanger": "polar_micro", "Yutu-2": "mare_micro"}

@@ -22,7 +22,7 @@ from rdk.design import Model
 from rdk.mass import mass_breakdown
 from rdk.mission import MASS_COEFFICIENTS
 from rdk.uncertainty import DRAWS, inputs_at, uncertain_names
-from rdk.validation import anchor_torque_nm
+from validation import anchor_torque_nm
 
 GROWING = ("wheel_radius_m", "wheel_width_m", "chassis_mass_kg", "solar_area_m2", "battery_capacity_wh",
            "avionics_power_w", "payload_mass_kg")

@@ -8,7 +8,7 @@ from rdk import catalog
 from rdk._fields import check, generator, unknown, whole
 from rdk.terramechanics import wheel_forces
 from rdk.uncertainty import DRAWS, uncertain_inputs
-from rdk.validation import QUANTITIES, error_pct, measured, single_wheel, single_wheel_conditions
+from validation import QUANTITIES, error_pct, measured, single_wheel, single_wheel_conditions
 
 
 def bootstrap_medians(reading_error_n: float = 0.5, reading_error_m: float = 1e-3, reading_error_nm: float = 0.1, *,

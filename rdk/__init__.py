@@ -16,10 +16,10 @@ __version__ = "0.1.0"
 
 _LAZY = {name: module for module, names in {
     "sampling": ("random_designs", "sweep", "Sweep", "intervals", "Intervals", "attribution", "Attribution"),
-    "tradespace": ("pareto_front", "Front"), "studies": ("fronts",), "explorer": ("Explorer",),
+    "tradespace": ("pareto_front", "Front"), "explorer": ("Explorer",),
     "report": ("write_report",), "sizing": ("size", "Sizing", "prudent_demands"),
-    None: ("explain", "explorer", "figures", "report", "route", "rules", "sampling",
-           "sizing", "stability", "studies", "terrain", "tradespace", "validation")}.items() for name in names}
+    None: ("explain", "explorer", "figures", "report", "route", "sampling",
+           "sizing", "stability", "terrain", "tradespace")}.items() for name in names}
 
 __all__ = [
     "DESIGN_SPACE", "Design", "Model", "Performance", "Problem", "Scenario", "Soil", "Wheel", "catalog", "evaluate",

@@ -171,7 +171,7 @@ def trade_space():
         tradespace.evaluate = kept
     print(f"pymoo, with answers ready: {free / 1e3:.2f} s")
     scenarios = [rdk.scenario(name) for name in SCENARIOS]
-    for label, run in (("study of the four scenarios", lambda: rdk.fronts(scenarios)),
+    for label, run in (("fronts of the four scenarios", lambda: [*map(rdk.pareto_front, scenarios)]),
                        ("intervals, 1,024 draws", lambda: rdk.intervals(rashid, mare)),
                        ("attribution, 2,048 mixtures",
                         lambda: rdk.attribution(rashid, rdk.rover("Tenacious").replace(wheel_count=6), mare))):

@@ -40,8 +40,9 @@ def copy(tmp_path_factory):
 
 
 def run(folder, *arguments):
-    """Python in the copy, on the copy's rdk."""
-    environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    """Python in the copy, on the copy's rdk and the modules beside the notebooks."""
+    environment = {**os.environ, "PYTHONPATH": f"{folder}{os.pathsep}{REPO / 'notebooks'}",
+                   "PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.run([sys.executable, *arguments], cwd=folder, env=environment, capture_output=True,
                           text=True)
 
@@ -60,8 +61,7 @@ def test_the_rows_of_the_recipes_pass_the_tests_of_the_data(copy):
 
 def test_new_rows_leave_the_papers_numbers_alone(copy):
     code = """
-import rdk
-from rdk import validation
+import rdk, validation
 paper = ["ding-2011", "hurrell-2025", "wang-han-2016"]
 print(validation.single_wheel_summary().query("experiment in @paper").to_json())
 print(validation.published_masses_summary().to_json(), validation.flown_rovers().to_json())

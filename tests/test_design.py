@@ -13,6 +13,7 @@ import pandas as pd
 import pytest
 
 import rdk
+import searches
 from rdk.design import DESIGN_SPACE, Problem
 from rdk.terramechanics import Soil, Wheel
 
@@ -450,8 +451,8 @@ def test_the_kernel_brings_its_own_transition():
     (lambda: rdk.attribution(DESIGN, "Pragyan", SCENARIO), r"baseline .*rdk.rover"),
     (lambda: rdk.evaluate("Rashid-1", SCENARIO), r"design .*rdk.rover"),
     (lambda: rdk.pareto_front("mare"), r"scenario .*rdk.scenario"),
-    (lambda: rdk.fronts(["mare"]), r"scenarios\[0\] .*rdk.scenario"),
-    (lambda: rdk.fronts([SCENARIO], model="paper"), r"model .*rdk.Model"),
+    (lambda: searches.fronts(["mare"]), r"scenarios\[0\] .*rdk.scenario"),
+    (lambda: searches.fronts([SCENARIO], model="paper"), r"model .*rdk.Model"),
     (lambda: rdk.terramechanics.wheel_forces("Rashid-1", SOIL, 5, 0.1), r"wheel .*rdk.rover\('Rashid-1'\).wheel"),
     (lambda: rdk.terramechanics.slip_balance(DESIGN, SOIL, 5, 1), r"wheel .*; got Design"),
     (lambda: rdk.terramechanics.slope_capability(DESIGN.wheel, "apollo-nominal", 5), r"soil .*rdk.soil\('apollo"),

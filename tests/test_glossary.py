@@ -14,9 +14,10 @@ import pytest
 
 import rdk
 import exercises as course
+import validation
 from rdk import _march, _contact as contact
 from rdk import catalog, design, explain, mass, mission, power, report, route, sampling, sky
-from rdk import terrain, terramechanics, thermal, tradespace, validation
+from rdk import terrain, terramechanics, thermal, tradespace
 
 REPO = Path(__file__).parents[1]
 TEXT = (REPO / "notebooks/glossary.md").read_text(encoding="utf-8")

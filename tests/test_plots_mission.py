@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import rdk
 import drawings as plots
-from rdk import figures, validation
+import validation
+from rdk import figures
 
 RASHID = rdk.rover("Rashid-1")
 MARE, POLAR = rdk.scenario("equatorial_mare_traverse"), rdk.scenario("polar_prospecting")

@@ -12,7 +12,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 import rdk  # noqa: E402
 import drawings as plots  # noqa: E402
-from rdk import terramechanics, validation  # noqa: E402
+import validation  # noqa: E402
+from rdk import terramechanics  # noqa: E402
 from wheel_doubts import bootstrap_medians  # noqa: E402
 
 WHEEL, SOIL = rdk.Wheel(0.10, 0.08, 0.015, 14), rdk.soil("apollo-nominal")

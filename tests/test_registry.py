@@ -8,7 +8,8 @@ from scipy import stats
 
 import rdk
 import registry
-from rdk import catalog, validation
+import validation
+from rdk import catalog
 from rdk.mass import mass_breakdown
 
 

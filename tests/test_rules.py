@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import rediscovery
+import rules
+import searches
 import sensitivity
 
 import rdk
-from rdk import catalog, rules, tradespace
+from rdk import catalog, tradespace
 
 MARE, HIGHLAND = rdk.scenario("equatorial_mare_traverse"), rdk.scenario("highland_slope_capability")
 NAMES = rdk.scenario_names("canonical")
@@ -101,7 +103,7 @@ def test_generations_of_one_search_are_those_of_shorter_searches():
 
 
 def test_crossover_is_the_lowest_height_with_six_wheels():
-    fronts = rdk.fronts([MARE], obstacle_heights_m=(0, 0.08, 0.12), population=20, generations=5)
+    fronts = searches.fronts([MARE], obstacle_heights_m=(0, 0.08, 0.12), population=20, generations=5)
     found = rules.crossover(rules.front_statistics(fronts.values())).iloc[0]
     assert found.crossover_m == 0.12, "a rigid wheel of at most 0.20 m climbs 0.10 m"
     assert found.highest_rigid_m == 0.08

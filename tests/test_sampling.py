@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import rdk
+import searches
 from rdk import catalog, sampling
 from rdk.uncertainty import inputs_at, uncertain_inputs, uncertain_names
-from rdk.validation import single_wheel
+from validation import single_wheel
 from wheel_doubts import interval_coverage
 
 MARE = rdk.scenario("equatorial_mare_traverse")
@@ -50,7 +51,7 @@ def assert_buildable(designs, bounds=None):
 @pytest.mark.parametrize("call", [lambda seed: rdk.random_designs(2, seed=seed),
                                   lambda seed: rdk.intervals(RASHID, MARE, draws=2, seed=seed),
                                   lambda seed: rdk.pareto_front(MARE, population=4, generations=1, seed=seed),
-                                  lambda seed: rdk.fronts([MARE], seeds=[seed], population=4, generations=1),
+                                  lambda seed: searches.fronts([MARE], seeds=[seed], population=4, generations=1),
                                   lambda seed: rdk.terrain.synthetic(seed, cells=32)])
 def test_a_seed_is_a_whole_number_everywhere(call, seed):
     with pytest.raises(ValueError, match="seeds? must be (a whole number, zero or more|one number)"):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rdk
-from searches import TwoAtATime
+from searches import TwoAtATime, fronts
 
 
 @pytest.fixture
@@ -18,7 +18,7 @@ def two_at_a_time():
 def test_searches_two_at_a_time_are_the_same_as_one_by_one(two_at_a_time):
     missions = [rdk.scenario("equatorial_mare_traverse"), rdk.scenario("polar_prospecting")]
     options = dict(seeds=[1], population=8, generations=2)
-    together, alone = rdk.fronts(missions, executor=two_at_a_time, **options), rdk.fronts(missions, **options)
+    together, alone = fronts(missions, executor=two_at_a_time, **options), fronts(missions, **options)
     assert list(map(str, together)) == list(map(str, alone))
     for ours, theirs in zip(together.values(), alone.values()):
         for name, values in theirs.designs.numbers().items():

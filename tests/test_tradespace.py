@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import rdk
+import searches
 from rdk import catalog, sampling
 from rdk import tradespace as ts
 
@@ -354,7 +355,7 @@ def test_a_converged_search_can_be_stopped_and_be_one_of_many():
     stopped = converged(on_generation=lambda progress: progress.generation == 3)
     assert stopped.message.startswith("stopped after generation 3") and len(stopped.history) == 3
     few = dict(population=20, start="light", generations="converged")
-    (front,) = rdk.fronts([HIGHLAND], seeds=[3], **few).values()
+    (front,) = searches.fronts([HIGHLAND], seeds=[3], **few).values()
     assert_same_bits(front, rdk.pareto_front(HIGHLAND, seed=3, **few))
 
 
@@ -592,7 +593,7 @@ SCENARIOS = [rdk.scenario("crater_rim_survey"), HIGHLAND]
 
 @pytest.fixture(scope="module")
 def serial():
-    return rdk.fronts(SCENARIOS, **TINY)
+    return searches.fronts(SCENARIOS, **TINY)
 
 
 def assert_same_study(one, other):
@@ -617,26 +618,26 @@ def test_a_study_is_every_combination_in_order(serial):
 def test_a_process_pool_gives_the_same_bits(serial):
     spawned = multiprocessing.get_context("spawn")              # nothing is inherited: everything travels
     with ProcessPoolExecutor(2, mp_context=spawned) as pool:
-        assert_same_study(serial, rdk.fronts(SCENARIOS, **TINY, executor=pool))
+        assert_same_study(serial, searches.fronts(SCENARIOS, **TINY, executor=pool))
 
 
 def test_threads_give_the_same_bits(serial):
     with ThreadPoolExecutor(3) as pool:
-        assert_same_study(serial, rdk.fronts(SCENARIOS, **TINY, executor=pool))
+        assert_same_study(serial, searches.fronts(SCENARIOS, **TINY, executor=pool))
 
 
 def test_a_dask_cluster_gives_the_same_bits(serial, tmp_path):
     distributed = pytest.importorskip("distributed")
     options = dict(n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=tmp_path)
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
-        found = rdk.fronts(SCENARIOS, **TINY, executor=client.get_executor())
+        found = searches.fronts(SCENARIOS, **TINY, executor=client.get_executor())
     assert_same_study(serial, found)
 
 
 def test_defaults_are_each_scenarios_seed_and_obstacles_reach_the_search():
     without_seed = replace(MARE, problem=replace(MARE.problem, seed=None))
     few = dict(population=8, generations=2)
-    found = rdk.fronts([SCENARIOS[0], without_seed], **few, obstacle_heights_m=[0.0, 0.12])
+    found = searches.fronts([SCENARIOS[0], without_seed], **few, obstacle_heights_m=[0.0, 0.12])
     assert [(c.seed, c.obstacle_height_m) for c in found] == [(12, 0.0), (12, 0.12), (0, 0.0), (0, 0.12)]
     for case, front in found.items():
         assert len(front) and np.all(front.performance.obstacle_capability_m >= case.obstacle_height_m)
@@ -646,7 +647,7 @@ def test_an_empty_front_in_a_study_is_a_message_and_no_warning():
     hard = replace(MARE, problem=replace(MARE.problem, constraints=(("range_km", ">=", 81.0),)))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        (front,) = rdk.fronts([hard], population=4, generations=2).values()
+        (front,) = searches.fronts([hard], population=4, generations=2).values()
     assert len(front) == 0 and "range_km >= 81" in front.message
 
 
@@ -696,8 +697,8 @@ def test_a_file_is_complete_or_absent(tmp_path, serial, monkeypatch):
 
 def test_numpy_numbers_and_iterators_give_the_same_cases():
     few = dict(population=4, generations=1)
-    plain = rdk.fronts([MARE], **few, seeds=[1, 2], shear_scales=[0.85])
-    assert_same_study(plain, rdk.fronts(iter([MARE]), **few, seeds=np.arange(1, 3), shear_scales=np.array([0.85])))
+    plain = searches.fronts([MARE], **few, seeds=[1, 2], shear_scales=[0.85])
+    assert_same_study(plain, searches.fronts(iter([MARE]), **few, seeds=np.arange(1, 3), shear_scales=np.array([0.85])))
 
 
 @pytest.mark.parametrize("changed, words", [
@@ -713,10 +714,10 @@ def test_numpy_numbers_and_iterators_give_the_same_cases():
     (dict(start=MARE), "start must be 'light' or None")])
 def test_bad_arguments_of_a_study_are_named(changed, words):
     with pytest.raises(ValueError, match=words):
-        rdk.fronts(**(dict(scenarios=[MARE], population=4, generations=1) | changed))
+        searches.fronts(**(dict(scenarios=[MARE], population=4, generations=1) | changed))
 
 
 def test_an_error_in_a_worker_reaches_the_caller():
     many = replace(MARE, slope_deg=np.array([1.0, 2.0]))
     with ThreadPoolExecutor(2) as pool, pytest.raises(ValueError, match="scenario must be a single one"):
-        rdk.fronts([many, MARE], population=4, generations=1, executor=pool)
+        searches.fronts([many, MARE], population=4, generations=1, executor=pool)

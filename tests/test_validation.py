@@ -10,9 +10,9 @@ from numpy.testing import assert_allclose
 
 import rdk
 import scalar_transcription as scalar
-from rdk import catalog, validation
+import validation
+from rdk import catalog
 from ledger import accepts
-from rdk import validation as wheels
 from wheel_doubts import bootstrap_medians, drawn as picked
 
 TARGETS = catalog.table("paper_targets.csv").set_index("id")
@@ -31,13 +31,13 @@ def masses():
 # ---- single wheels -----------------------------------------------------------------------------------------
 
 def test_one_call_of_the_kernel_solves_every_point(monkeypatch):
-    calls, solve = [], wheels.wheel_forces
+    calls, solve = [], validation.wheel_forces
 
     def counted(*args, **options):
         calls.append(args[3].shape)
         return solve(*args, **options)
 
-    monkeypatch.setattr(wheels, "wheel_forces", counted)
+    monkeypatch.setattr(validation, "wheel_forces", counted)
     table = validation.single_wheel()
     assert calls == [(len(table),)] and len(table) == len(catalog.rows("single_wheel.csv")) > 26
     bootstrap_medians(samples=3)              # reading errors move the measurements, not the model

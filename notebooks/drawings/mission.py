@@ -66,8 +66,8 @@ def system_diagram():
     results = [name for names in EVALUATION_RESULTS.values() for name in names]
     box(8.2, 2.35, 2.15, 3.7, "Performance", "\n".join(results) + "\nstalled, feasible ...", BLUE)
     arrow((7.65, 4.2), (8.2, 4.2))
-    box(2.45, -0.7, 5.2, 0.95, "tradespace, validation, explorer",
-        "many designs at once, comparisons, pictures, sliders", GREEN)
+    box(2.45, -0.7, 5.2, 0.95, "tradespace, sizing, explorer",
+        "many designs at once, demands, pictures, sliders", GREEN)
     arrow((9.27, 2.35), (9.27, -0.22), (7.65, -0.22))
     arrow((2.45, -0.22), (-0.25, -0.22), (-0.25, 5.42), (0.05, 5.42),
           text="the next design:\nthe loop closes out here", at=(1.05, 0.15), dash="--")

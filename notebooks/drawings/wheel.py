@@ -119,7 +119,7 @@ def load_and_pull(cases, weight_n, slope_deg):
 def single_wheel_comparison(points, lines):
     """Measured points of pull, sinkage and torque over the kernel's curves, one column a test.
 
-    Both are tables of `rdk.validation`: of `single_wheel` and of `single_wheel_curves`.
+    Both are tables of `validation`: of `single_wheel` and of `single_wheel_curves`.
     """
     tests = points.experiment.unique()
     figure, grid = panels(3, len(tests), figsize=(3.2 * len(tests), 8.2), sharex=True, squeeze=False)

@@ -6,7 +6,8 @@ from functools import cache
 
 import numpy as np
 
-from rdk import catalog, rules, terramechanics
+import rules
+from rdk import catalog, terramechanics
 from rdk.design import DESIGN_SPACE, Design, Model
 from rdk.mission import evaluate
 from rdk.sampling import attribution, intervals

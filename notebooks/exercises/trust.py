@@ -7,9 +7,10 @@ from functools import cache
 import ledger
 import numpy as np
 import pandas as pd
+import validation
 from rediscovery import baselines, unit_cube
 
-from rdk import catalog, validation
+from rdk import catalog
 from rdk.design import Design, Model
 from rdk.mission import evaluate
 from rdk.sampling import intervals

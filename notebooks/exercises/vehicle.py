@@ -6,7 +6,8 @@ from functools import cache
 
 import numpy as np
 
-from rdk import catalog, power, thermal, validation
+import validation
+from rdk import catalog, power, thermal
 from rdk.design import Model
 from rdk.mass import mass_breakdown
 from rdk.mission import evaluate

@@ -7,9 +7,10 @@ from functools import cache
 import numpy as np
 from scipy.optimize import least_squares
 
-from rdk import catalog, terramechanics, validation
-from wheel_doubts import bootstrap_medians
+import validation
+from rdk import catalog, terramechanics
 from rdk.mission import evaluate
+from wheel_doubts import bootstrap_medians
 
 from .judging import Exercise
 from .shared import bus_factor, first, mare, rashid

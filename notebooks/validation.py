@@ -9,12 +9,12 @@ import warnings
 import numpy as np
 import pandas as pd
 
-from . import catalog, power
-from ._fields import check, require, unknown
-from .design import DESIGN_SPACE, Model, single
-from .mass import MassBreakdown, mass_breakdown
-from .mission import MASS_COEFFICIENTS, evaluate
-from .terramechanics import Soil, Wheel, wheel_forces
+from rdk import catalog, power
+from rdk._fields import check, require, unknown
+from rdk.design import DESIGN_SPACE, Model, single
+from rdk.mass import MassBreakdown, mass_breakdown
+from rdk.mission import MASS_COEFFICIENTS, evaluate
+from rdk.terramechanics import Soil, Wheel, wheel_forces
 
 
 def error_pct(model, reference):

@@ -12,10 +12,10 @@ from collections.abc import Iterable
 import numpy as np
 import pandas as pd
 
-from ._fields import check, listed, require, unknown
-from .design import DESIGN_SPACE, Design, Model, Scenario
-from .mission import evaluate, mass_of
-from .tradespace import Front, beaten, minimised
+from rdk._fields import check, listed, require, unknown
+from rdk.design import DESIGN_SPACE, Design, Model, Scenario
+from rdk.mission import evaluate, mass_of
+from rdk.tradespace import Front, beaten, minimised
 
 SHEAR_SCALES = (0.70, 0.85, 1.00, 1.15, 1.30)
 """Factors on the shear stress in the paper's robustness study."""
