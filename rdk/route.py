@@ -1,4 +1,4 @@
-"""Ways over a height map: what a metre costs, the cheapest way, rocks in it, and the march along it.
+"""Ways over a height map: what a metre costs, the cheapest way, and the march along it.
 
 Energy and time come from the wheel model at each slope, the way from SciPy's Dijkstra on the eight neighbours of each
 cell. Slopes shorter than a cell, turning, and braking that would charge the battery are left out.
@@ -19,8 +19,6 @@ from .terrain import Terrain
 MODES = ("drive", "science", "charge", "sleep", "arrived", "empty", "stalled")
 DRIVE, SCIENCE, CHARGE, SLEEP, ARRIVED, EMPTY, STALLED = range(7)
 
-
-# ---- what a metre costs ----------------------------------------------------------------------------------------
 
 def per_metre(design: Design, scenario: Scenario, slope_deg: Real, *, model: Model = Model()) -> tuple[Real, Real]:
     """Energy of the wheels (J/m) and time (s/m) for a metre of ground, at the hub's or the allowed speed.
@@ -51,8 +49,6 @@ def cost(design: Design, scenario: Scenario, *, model: Model = Model()) -> Calla
     joule = wheel + (design.avionics_power_w + scenario.payload_power_w) * second
     return lambda slope_deg: np.interp(slope_deg, slope, joule, left=np.inf, right=np.inf)
 
-
-# ---- the cheapest way ------------------------------------------------------------------------------------------
 
 @dataclass(frozen=True, eq=False)
 class Route:
@@ -89,8 +85,7 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
         raise ValueError(f"detour must be one number or have the map's shape {height.shape}; got {np.shape(detour)}")
     detour = np.broadcast_to(detour, height.shape)
     for name, end in (("start", start), ("goal", goal)):
-        if not isinstance(end, (tuple, list, np.ndarray)) or len(end) != 2 or not all(
-                i in range(n) for i, n in zip(end, height.shape)):
+        if np.shape(end) != (2,) or not all(i in range(n) for i, n in zip(end, height.shape)):
             raise ValueError(f"{name} must be a cell (row, column) of the {rows} x {columns} map; got {end!r}")
     tilt, index = terrain.slope(), np.arange(rows * columns, dtype=np.int32).reshape(rows, columns)
     safe, edges = tilt <= tilt_limit_deg, []
@@ -109,20 +104,19 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
     graph = csr_array((joule[real], (source[real], target[real])), shape=(index.size, index.size))
     first, last = index[tuple(start)].item(), index[tuple(goal)].item()
     energy, before = dijkstra(graph, indices=first, return_predecessors=True)
+    reach = energy.reshape(rows, columns)
     if not np.isfinite(energy[last]):
         steep = [f"the {name} ({row}, {column}) tilts {tilt[row, column]:.1f} deg"
                  for name, (row, column) in (("start", start), ("goal", goal)) if not safe[row, column]]
         why = " and ".join(steep) or f"{np.isfinite(energy).mean():.1%} of the map can be reached from the start"
-        return Route(np.inf, np.inf, np.empty((0, 2), int), energy.reshape(rows, columns),
+        return Route(np.inf, np.inf, np.empty((0, 2), int), reach,
                      f"no way within {tilt_limit_deg:g} deg of tilt and {edge_limit_deg:g} deg along the way: {why}")
     path = [last]
     while path[-1] != first:
         path.append(int(before[path[-1]]))
     cells = np.array(np.unravel_index(path[::-1], (rows, columns))).T
-    return Route(float(energy[last]), float(along(terrain, cells).ground_m.sum()), cells, energy.reshape(rows, columns))
+    return Route(float(energy[last]), float(along(terrain, cells).ground_m.sum()), cells, reach)
 
-
-# ---- the march along it ----------------------------------------------------------------------------------------
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Way:
@@ -199,10 +193,6 @@ class March:
 
     __repr__ = brief
 
-    def hours(self, mode: str) -> float | np.ndarray:
-        """Hours spent in one of `MODES`."""
-        return (self.mode == MODES.index(mode)).sum(0) * self.time_h[0]
-
 
 def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(), delay_h: Real = 0.0,
           follow_sun: bool = False, rest_soc: float = 0.5, go_soc: float = 0.9, science_every_m: float = np.inf,
@@ -229,25 +219,20 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     lanes = np.broadcast_shapes(design.shape, scenario.shape, model.shape, np.shape(check("delay_h", delay_h)))
     if len(lanes) > 1 or 0 in lanes:
         raise ValueError(f"a march takes one row of lanes; got shape {lanes}")
-
-    def column(value):
-        return np.broadcast_to(np.asarray(value, float), lanes or (1,))
-
-    wheel, second = (np.broadcast_to(x, (column(0).size, len(way.slope_deg))) for x in per_metre(*(
+    count, goal = lanes[0] if lanes else 1, way.distance_m[-1]
+    wheel, second = (np.broadcast_to(x, (count, len(way.slope_deg))) for x in per_metre(*(
         record[:, None] if record.shape else record for record in (design, scenario)), way.slope_deg,
         model=model[:, None] if model.shape else model))
-    length = way.ground_m * detour
-    stuck, goal = np.isinf(second), way.distance_m[-1]
+    stuck, points = np.isinf(second), np.broadcast_to(way.distance_m, (count, len(way.distance_m)))
     end = np.where(stuck.any(1), way.distance_m[np.argmax(stuck, 1)], goal)
-    clock, joules = (np.cumsum(np.c_[np.zeros(len(x)), np.where(stuck, 1e6, x * length)], axis=1)
+    clock, joules = (np.cumsum(np.c_[np.zeros(count), np.where(stuck, 1e6, x * (way.ground_m * detour))], axis=1)
                      for x in (second, wheel))
 
     def along_lane(x, xs, ys):
         """Interpolation lane by lane: the lanes' rising tables end to end."""
-        shift = np.arange(len(x)) * 2 * xs.max()
+        shift = np.arange(count) * 2 * xs.max()
         return np.interp(np.minimum(x, xs[:, -1]) + shift, (xs + shift[:, None]).ravel(), ys.ravel())
 
-    points = np.broadcast_to(way.distance_m, clock.shape)
     steps = int(np.ceil(24 * scenario.duration_earth_days / step_h))
     time = np.arange(1, steps + 1) * step_h
     date = sky.julian_date(scenario.start_utc) + (time[:, None] - step_h / 2 + np.atleast_1d(delay_h)) / 24
@@ -257,20 +242,17 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
         lat, lon = (np.interp(at, way.distance_m, values) for values in (
             way.latitude_deg, np.unwrap(way.longitude_deg, period=360)))
         elevation, azimuth = power.sun_position(lat, lon - noon, declination)
-        facing = power.incidence_factor(lat, lon - noon, scenario.panel_tilt_deg,
-                                        azimuth if follow_sun else scenario.panel_azimuth_deg, declination,
-                                        sky.lit_fraction(elevation, azimuth, seen))
-        light.append(np.broadcast_to(facing, (steps, column(0).size)))
-    light = np.array([*light, light[-1]])                # cos(i) times lit share by skyline; beyond the last, the last
-    panel = column(power.panel_power(np.asarray(design.solar_area_m2), 1.0, efficiency=model.panel_efficiency,
-                                     dust_factor=model.dust_factor, solar_constant_w_m2=model.solar_constant_w_m2))
-    avionics, payload, asleep, capacity, into, out = (column(x) for x in (
-        design.avionics_power_w, scenario.payload_power_w, model.hibernation_power_w, design.battery_capacity_wh,
-        model.charge_efficiency, model.discharge_efficiency))
+        light.append(power.incidence_factor(
+            lat, lon - noon, scenario.panel_tilt_deg, azimuth if follow_sun else scenario.panel_azimuth_deg,
+            declination, sky.lit_fraction(elevation, azimuth, seen)))
+    light = np.broadcast_to([*light, light[-1]], (len(seen_m), steps, count))    # beyond the last skyline, the last
+    panel = power.panel_power(design.solar_area_m2, 1.0, efficiency=model.panel_efficiency,
+                              dust_factor=model.dust_factor, solar_constant_w_m2=model.solar_constant_w_m2)
+    avionics, capacity = design.avionics_power_w, design.battery_capacity_wh
     floor = model.soc_floor * capacity
-    stored, distance, work_h = np.maximum(model.soc_initial * capacity, floor), column(0), column(0)
-    resting, lost, stop = column(0) > 0, column(0) > 0, column(science_every_m)
-    log, lane = [], np.arange(len(stored))
+    distance, stored = np.zeros(count), np.maximum(model.soc_initial * capacity, floor)
+    resting, lost, work_h, stop = False, False, 0.0, science_every_m
+    log, lane = [], np.arange(count)
     for step in range(steps):
         k = np.maximum(np.searchsorted(seen_m, distance, "right") - 1, 0)
         share = np.clip((distance - seen_m[k]) / np.diff(seen_m)[k], 0, 1)
@@ -282,9 +264,11 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
         ahead = along_lane(along_lane(distance, points, clock) + 3600 * step_h, clock, points)
         ahead = np.where(mode == DRIVE, np.minimum(np.minimum(ahead, end), stop), distance)
         hub = (along_lane(ahead, points, joules) - along_lane(distance, points, joules)) / (3600 * step_h)
-        load = np.where(mode == SLEEP, asleep, avionics) + np.where(mode == SCIENCE, payload, 0) + hub
+        load = np.where(mode == SLEEP, model.hibernation_power_w, avionics) + hub
+        load = load + np.where(mode == SCIENCE, scenario.payload_power_w, 0)
         load, net = np.where(lost, 0.0, [load, solar - load])
-        stored = np.minimum(stored + step_h * np.where(net > 0, net * into, net / out), capacity)
+        change = np.where(net > 0, net * model.charge_efficiency, net / model.discharge_efficiency)
+        stored = np.minimum(stored + step_h * change, capacity)
         lost = lost | (stored <= floor) & (mode < ARRIVED)
         stored = np.maximum(stored, floor)
         there = (ahead >= stop) & (mode == DRIVE)

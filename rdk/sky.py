@@ -5,7 +5,6 @@ longitudes positive, azimuths clockwise from north.
 """
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
@@ -29,9 +28,9 @@ class Skyline:
     """
     azimuth_deg: np.ndarray
     elevation_deg: np.ndarray
-    latitude_deg: float = field(default=math.nan, compare=False)
-    longitude_deg: float = field(default=math.nan, compare=False)
-    height_m: float = field(default=math.nan, compare=False)
+    latitude_deg: float = field(default=np.nan, compare=False)
+    longitude_deg: float = field(default=np.nan, compare=False)
+    height_m: float = field(default=np.nan, compare=False)
     name: str = field(default="", compare=False)
 
     _key, __eq__, __hash__ = Record._key, Record.__eq__, Record.__hash__
@@ -116,14 +115,7 @@ def subsolar_point(julian_date: Real) -> tuple[Real, Real]:
 
 
 def sun_position(latitude_deg: Real, longitude_deg: Real, julian_date: Real) -> tuple[Real, Real]:
-    """Elevation and azimuth of the sun's centre at a place and date, in degrees, as `rdk.power.sun_position`.
-
-    Examples
-    --------
-    >>> elevation, azimuth = sun_position(-89.45, 222.7, julian_date("2026-10-20"))
-    >>> f"{elevation:.1f} deg high"
-    '0.8 deg high'
-    """
+    """Elevation and azimuth of the sun's centre at a place and date, in degrees, as `rdk.power.sun_position`."""
     latitude_deg, longitude_deg = check("latitude_deg", latitude_deg, -90, 90), check("longitude_deg", longitude_deg)
     declination_deg, noon_deg = subsolar_point(julian_date)
     return power.sun_position(latitude_deg, longitude_deg - noon_deg, declination_deg)

@@ -11,63 +11,51 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._fields import brief, check, together
+from ._fields import Real, brief, check, together
 
-Values = float | np.ndarray
 LEAST_BODY_HEIGHT_M = 0.05                               # a warm box holds at least the height of a cell or a board
 RIGID_BELLY_RADII, ROCKER_BELLY_RADII = 1.2, 2.0         # height of the belly above the ground, in wheel radii
 
 
 class AxleLoads(NamedTuple):
     """Force of the ground normal to the slope on each pair of wheels, in newtons; `middle_n` is NaN on four wheels."""
-    front_n: Values
-    middle_n: Values
-    rear_n: Values
+    front_n: Real
+    middle_n: Real
+    rear_n: Real
 
     __repr__ = brief
 
 
 class TipOver(NamedTuple):
     """Slopes in degrees at which a standing rover tips over: facing up, facing down, across the slope."""
-    uphill_deg: Values
-    downhill_deg: Values
-    sideways_deg: Values
+    uphill_deg: Real
+    downhill_deg: Real
+    sideways_deg: Real
 
     __repr__ = brief
 
 
 class Stance(NamedTuple):
     """Track, height of the belly (less the sinkage: the clearance) and of the centre of mass, in metres."""
-    track_m: Values
-    belly_height_m: Values
-    centre_height_m: Values
+    track_m: Real
+    belly_height_m: Real
+    centre_height_m: Real
 
     __repr__ = brief
 
 
-def axle_loads(mass_kg: Values, wheelbase_m: Values, centre_height_m: Values, slope_deg: Values, *, wheel_count: Values,
-               centre_offset_m: Values = 0.0, pivot_height_m: Values | None = None,
-               gravity_m_s2: Values = 1.625) -> AxleLoads:
+def axle_loads(mass_kg: Real, wheelbase_m: Real, centre_height_m: Real, slope_deg: Real, *, wheel_count: Real,
+               centre_offset_m: Real = 0.0, pivot_height_m: Real | None = None,
+               gravity_m_s2: Real = 1.625) -> AxleLoads:
     """Load on each pair of wheels of a rover that faces up a slope: rigid on four wheels, rocker-bogie on six.
 
-    Parameters
-    ----------
-    mass_kg, wheelbase_m : float or ndarray
-        Positive.
-    slope_deg : float or ndarray
-        Between -90 and 90; positive: the front is uphill.
-    wheel_count : int or ndarray
-        4, two axles at the ends of the wheelbase; 6, three evenly spaced, with the bogie on front and middle.
-    centre_height_m, centre_offset_m : float or ndarray
-        Of the centre of mass above the ground (zero or more) and ahead of the middle of the wheelbase.
-    pivot_height_m : float or ndarray, optional
-        Of the bogie's pivot, midway between its wheels; by default on the ground: there it always shares evenly.
+    Four wheels stand at the ends of the wheelbase; six on three axles, evenly spaced, the bogie on front and middle.
+    The slope lies between -90 and 90 deg; where it is positive, the front is uphill. The centre of mass is zero or more
+    above the ground and `centre_offset_m` ahead of the middle; the bogie's pivot is midway between its wheels and by
+    default on the ground: there it always shares evenly.
 
-    Returns
-    -------
-    AxleLoads
-        They add up to the weight's component normal to the slope. A negative load belongs to a pair that has lifted:
-        the rover then stands otherwise than assumed here.
+    The loads add up to the weight's component normal to the slope. A negative one belongs to a pair that has lifted:
+    the rover then stands otherwise than assumed here.
 
     Examples
     --------
@@ -84,17 +72,13 @@ def axle_loads(mass_kg: Values, wheelbase_m: Values, centre_height_m: Values, sl
              slope_deg=np.shape(slope), wheel_count=np.shape(count), centre_offset_m=np.shape(offset),
              pivot_height_m=np.shape(pivot), gravity_m_s2=np.shape(gravity))
     weight, cos, sin = mass * gravity, np.cos(slope), np.sin(slope)
-
-    def horizontal(x, h):                                # distance uphill as gravity sees it
-        return x * cos - h * sin
-
-    half = length * cos / 2                              # horizontal distance of the end wheels from the middle
-    centre = horizontal(offset, height)
+    half = length * cos / 2                              # horizontal distance from the middle: of the end wheels,
+    centre = offset * cos - height * sin                 # of the centre of mass,
+    joint = length / 4 * cos - pivot * sin               # of the bogie's pivot
     with np.errstate(divide="ignore", invalid="ignore"):
         # four wheels: moments about the rear axle, then about the front one
         front, rear = weight * (centre + half) / (2 * half), weight * (half - centre) / (2 * half)
         # six: the bogie's pivot and the rear wheels carry the body, the bogie's wheels carry the pivot
-        joint = horizontal(length / 4, pivot)
         bogie = weight * (centre + half) / (joint + half)
         first = bogie * joint / half
         six = np.equal(count, 6)
@@ -102,19 +86,13 @@ def axle_loads(mass_kg: Values, wheelbase_m: Values, centre_height_m: Values, sl
             (first, front), (bogie - first, np.nan), (weight - bogie, rear))))
 
 
-def tip_over(wheelbase_m: Values, track_m: Values, centre_height_m: Values, *,
-             centre_offset_m: Values = 0.0) -> TipOver:
+def tip_over(wheelbase_m: Real, track_m: Real, centre_height_m: Real, *, centre_offset_m: Real = 0.0) -> TipOver:
     """Slopes at which a standing rover tips over, in each direction.
 
     Facing up, the load of the uphill pair (on six wheels: of the whole bogie) vanishes there; across the slope, that of
     the uphill side. A bogie's front wheel lifts before its load does where the pivot is higher than half the centre of
     mass: that is no tip-over yet. Wheelbase and track are those of the outer wheels' centres; the centre of mass is at
     `centre_height_m` (zero or more), `centre_offset_m` ahead of the middle and inside the wheelbase.
-
-    Examples
-    --------
-    >>> f"{tip_over(0.5, 0.4, 0.2).sideways_deg:.0f} deg"
-    '45 deg'
     """
     length, track = check("wheelbase_m", wheelbase_m, above=0), check("track_m", track_m, above=0)
     height, offset = check("centre_height_m", centre_height_m, 0), check("centre_offset_m", centre_offset_m)
@@ -126,9 +104,8 @@ def tip_over(wheelbase_m: Values, track_m: Values, centre_height_m: Values, *,
         length / 2 + offset, length / 2 - offset, np.asarray(track) / 2)))
 
 
-def stance(total_mass_kg: Values, wheels_mass_kg: Values, wheel_radius_m: Values, wheel_width_m: Values,
-           wheelbase_m: Values, wheel_count: Values, *, track_ratio: Values = 0.9,
-           envelope_density_kg_m3: Values = 145.0) -> Stance:
+def stance(total_mass_kg: Real, wheels_mass_kg: Real, wheel_radius_m: Real, wheel_width_m: Real, wheelbase_m: Real,
+           wheel_count: Real, *, track_ratio: Real = 0.9, envelope_density_kg_m3: Real = 145.0) -> Stance:
     """Track and centre of mass that a rover of these sizes would have, from what published rovers have in common.
 
     The rover fills an envelope of wheelbase and two radii, by track (`track_ratio` times the wheelbase: 0.65 to 1.3 on

@@ -106,12 +106,9 @@ class Terrain:
         inside = (row >= 0) & (row <= rows - 1) & (column >= 0) & (column <= columns - 1)
         i = np.clip(np.where(inside, row, 0), 0, rows - 2).astype(np.intp)       # outside, any cell: it becomes NaN
         k = np.clip(np.where(inside, column, 0), 0, columns - 2).astype(np.intp)
-        down, right, flat = row - i, column - k, self.height_m.ravel()
-        i *= columns
-        i += k
-        top = flat[i] * (1 - right) + flat[i + 1] * right
-        i += columns
-        return np.where(inside, top * (1 - down) + (flat[i] * (1 - right) + flat[i + 1] * right) * down, np.nan)
+        down, right, flat, first = row - i, column - k, self.height_m.ravel(), i * columns + k
+        top, bottom = (flat[n] * (1 - right) + flat[n + 1] * right for n in (first, first + columns))
+        return np.where(inside, top * (1 - down) + bottom * down, np.nan)
 
     def slope(self) -> np.ndarray:
         """Steepest slope of each cell in degrees, over a baseline of two cells: shorter slopes are steeper."""
@@ -124,8 +121,8 @@ class Terrain:
         Coarser maps `beyond` serve where this one ends: the first that covers a point gives its height; where all end,
         nothing more is seen. The search begins at 15 m, by half a cell, later by 1 % of the distance.
         """
-        x, y, height_m = (check(name, value, low, scalar=True) for name, value, low in (
-            ("x", x, -np.inf), ("y", y, -np.inf), ("height_m", height_m, 0)))
+        x, y = check("x", x, scalar=True), check("y", y, scalar=True)
+        height_m = check("height_m", height_m, 0, scalar=True)
         check("farthest_m", farthest_m, above=NEAREST_M, scalar=True)
         azimuth = np.arange(whole("directions", directions, 4)) * 360 / directions
         (lat, lon), ground = self.to_latlon(x, y), float(self.at(x, y))
@@ -139,14 +136,12 @@ class Terrain:
         east, north, up = _axes(lat, lon)
         ahead = np.outer(np.cos(np.radians(azimuth)), north) + np.outer(np.sin(np.radians(azimuth)), east)
         for terrain in (self, *listed("beyond", beyond, Terrain)):       # of each only the stretch that it can add to
-            corner = np.subtract(terrain.to_xy(lat, lon), (terrain.west_m, terrain.north_m))
-            other = corner - np.multiply(terrain.height_m.shape[::-1], (terrain.step_m, -terrain.step_m))
-            reach = np.hypot(*np.maximum(abs(corner), abs(other)))
-            stretch = slice(np.argmax(np.isnan(height).any(axis=0)), np.searchsorted(s, reach))
-            rays = [np.outer(ahead @ axis, np.sin(arc[stretch])) + (up @ axis) * np.cos(arc[stretch])
-                    for axis in terrain._axes]
-            known = height[:, stretch]
-            height[:, stretch] = np.where(np.isnan(known), terrain.at(*terrain._from_axes(*rays)), known)
+            corners = terrain.place(*([0, n - 1] for n in terrain.height_m.shape))
+            reach = np.hypot(*abs(np.array(corners) - np.vstack(terrain.to_xy(lat, lon))).max(axis=1))
+            k = np.flatnonzero(np.isnan(height).any(axis=0) & (s <= reach))
+            rays = [np.outer(ahead @ axis, np.sin(arc[k])) + (up @ axis) * np.cos(arc[k]) for axis in terrain._axes]
+            new = terrain.at(*terrain._from_axes(*rays))
+            height[:, k] = np.where(np.isnan(height[:, k]), new, height[:, k])
         r, eye = self.radius_m + height, self.radius_m + ground + height_m
         # a point of radius r at the arc g stands at tan(elevation) = (r cos g - r_eye) / (r sin g)
         tangent = np.fmax.reduce((r * np.cos(arc) - eye) / (r * np.sin(arc)), axis=1)
@@ -201,8 +196,8 @@ def _png(path, **given):
             row = next((row for row in csv.DictReader(file) if row.get("file") == path.name), {})
         given = {name: _number(path, row, name) for name in needed if row.get(name)}
         if centre := re.search(r"centre ([\d.]+) ([NS]) (-?[\d.]+) E", row.get("projection", "")):
-            north = 1 if centre[2] == "N" else -1
-            given |= dict(latitude_deg=north * float(centre[1]), longitude_deg=float(centre[3]))
+            north = float(centre[1])
+            given |= dict(latitude_deg=north if centre[2] == "N" else -north, longitude_deg=float(centre[3]))
     missing = [name for name in needed if name not in given]
     if missing:
         raise ValueError(f"{path.name}: a PNG does not say where it lies; give {', '.join(missing)}")
@@ -219,8 +214,7 @@ def _pds(path):
     if missing := {".lbl", ".img"} - set(found):
         raise FileNotFoundError(f"{path.name} needs {path.stem}{missing.pop()} beside it")
     text = re.sub(r"/\*.*?\*/", "", found[".lbl"].read_text(encoding="latin-1").upper(), flags=re.S)
-    entries = re.findall(r"^\s*(\^?\w+)\s*=(.*)$", text, re.M)
-    label = {key: value.strip(" \t\r\"'") for key, value in entries}
+    label = dict(re.findall(r"""^\s*(\^?\w+)\s*=[ \t"']*(.*?)[ \t"']*$""", text, re.M))
     entry = partial(_number, path, label)
     kinds = {"LSB_INTEGER": "<i", "MSB_INTEGER": ">i", "PC_REAL": "<f", "IEEE_REAL": ">f"}
     _expect(path, "projection", label.get("MAP_PROJECTION_TYPE", "").replace("_", " "),
@@ -295,7 +289,8 @@ def synthetic(seed: int, *, like: str = "connecting_ridge_10m", cells: int = 256
     cells = whole("cells", cells, 32)
     step = check("step_m", float(re.search(r"_(\d+)m", like)[1]) if step_m is None else step_m, above=0, scalar=True)
     rng = generator(seed)
-    wave = np.hypot(np.fft.fftfreq(cells)[:, None], np.fft.fftfreq(cells))
+    frequency = np.fft.fftfreq(cells)
+    wave = np.hypot(frequency[:, None], frequency)
     wave[0, 0] = np.inf                                  # amplitude falls as the wavelength to the power 2.5
     height = np.fft.ifft2(np.fft.fft2(rng.standard_normal((cells, cells))) / wave**2.5).real
     height *= 0.03 * cells / height.std()
@@ -305,23 +300,19 @@ def synthetic(seed: int, *, like: str = "connecting_ridge_10m", cells: int = 256
         r = np.hypot(away[0][:, None], away[1]) / (diameter / 2)
         depth = rng.uniform(0.02, 0.2) * diameter       # worn bowls to fresh ones, with a rim a fifth as high
         height += depth * np.where(r < 1, 1.2 * np.minimum(r, 1)**2 - 1, 0.2 / np.maximum(r, 1)**3)
+    # scale each gradient so that the slopes are the map's, integrate to the nearest surface, and again
     shares = np.cumsum(np.r_[0, table[f"{like}_pct"]])
     slopes = np.interp((np.arange(cells**2) + 0.5) / cells**2, shares / shares[-1], np.r_[0, table.slope_to_deg])
-    return Terrain(_with_slopes(height, slopes) * step, step, -cells * step / 2, cells * step / 2, latitude_deg,
-                   longitude_deg, name=f"synthetic {seed}, like {like}")
-
-
-def _with_slopes(height, slopes_deg):
-    """Heights in cells with these slopes, given by rising size: scale each gradient, integrate, again."""
-    wave = np.sin(2 * np.pi * np.fft.fftfreq(len(height)))           # of central differences
+    wave = np.sin(2 * np.pi * frequency)                 # of central differences
     square = wave[:, None]**2 + wave**2
     square[square < 1e-12] = np.inf                      # level and checkerboard, which have no slope
     for _ in range(10):
         down, right = ((np.roll(height, -1, axis) - np.roll(height, 1, axis)) / 2 for axis in (0, 1))
         steep = np.hypot(down, right)
         factor = np.empty(height.size)
-        factor[np.argsort(steep, axis=None, kind="stable")] = np.tan(np.radians(slopes_deg))
+        factor[np.argsort(steep, axis=None, kind="stable")] = np.tan(np.radians(slopes))
         factor = factor.reshape(height.shape) / np.maximum(steep, 1e-12)
         spectrum = -1j * (wave[:, None] * np.fft.fft2(down * factor) + wave * np.fft.fft2(right * factor)) / square
-        height = np.fft.ifft2(spectrum).real             # the nearest surface to these gradients
-    return height
+        height = np.fft.ifft2(spectrum).real
+    return Terrain(height * step, step, -cells * step / 2, cells * step / 2, latitude_deg, longitude_deg,
+                   name=f"synthetic {seed}, like {like}")
