@@ -31,13 +31,6 @@ class Binding(NamedTuple):
     detail: str = ""
 
 
-class Limit(NamedTuple):
-    """What a mission needs of one Performance field, whether it is met, and the need in words."""
-    metric: str
-    met: bool
-    words: str
-
-
 def label(name):
     """Words and unit of a field by its name, such as ("range", "km") of "range_km"."""
     unit = next((unit for unit in UNITS if name.endswith("_" + unit)), "")
@@ -141,7 +134,7 @@ def levers(design, scenario, performance, key, *, model=Model()):
     return sorted(rows, key=lambda lever: -lever[2])
 
 
-def verdict(design, scenario, performance, *, model=Model()):
+def verdict(design, scenario, performance):
     """Whether a single design does its mission, the demands of its problem included, and that in one sentence."""
     p, limit = performance, scenario.traverse_limit_km
     slope = f"{scenario.slope_deg:g}°"
@@ -168,22 +161,22 @@ def verdict(design, scenario, performance, *, model=Model()):
 
 
 def limits(design, scenario, performance, *, model=Model()):
-    """The mission's requirements as Limits: range, slope, torque, energy balance, obstacle, stall, temperatures."""
+    """What a mission needs: Performance field -> whether the design meets that, and the need in words."""
     p, s = performance, scenario
     slope = f"{s.slope_deg:g} deg at slip {model.slope_capability_slip:g}"
     if p.slope_capability_deg < s.slope_deg and not p.stalled:       # some wheels pull more at a higher slip
         slope += f" (climbed at slip {p.slip:.2f})"
-    rows = (("range_km", p.range_km > 0, f"above 0, limit {s.traverse_limit_km:g} km"),
-            ("slope_capability_deg", p.slope_capability_deg >= s.slope_deg, slope),
-            ("wheel_torque_nm", p.wheel_torque_nm <= design.peak_wheel_torque_nm,
-             f"at most {design.peak_wheel_torque_nm:.3g} N m"),
-            ("energy_balance_pct", p.energy_balance_pct >= 0, "0 % or more"),
-            ("obstacle_capability_m", p.obstacle_capability_m >= s.required_obstacle_height_m,
-             f"{s.required_obstacle_height_m:g} m"),
-            ("stalled", not p.stalled and not p.buried, "must drive the slope"),
-            ("thermal_survival", p.thermal_survival, f"{p.cold_temperature_c:.0f} to {p.hot_temperature_c:.0f} °C, "
-             f"allowed {model.operating_temperature_min_c:g} to {model.operating_temperature_max_c:g}"))
-    return [Limit(metric, bool(met), words) for metric, met, words in rows]
+    return {
+        "range_km": (p.range_km > 0, f"above 0, limit {s.traverse_limit_km:g} km"),
+        "slope_capability_deg": (p.slope_capability_deg >= s.slope_deg, slope),
+        "wheel_torque_nm": (p.wheel_torque_nm <= design.peak_wheel_torque_nm,
+                            f"at most {design.peak_wheel_torque_nm:.3g} N m"),
+        "energy_balance_pct": (p.energy_balance_pct >= 0, "0 % or more"),
+        "obstacle_capability_m": (p.obstacle_capability_m >= s.required_obstacle_height_m,
+                                  f"{s.required_obstacle_height_m:g} m"),
+        "stalled": (not p.stalled and not p.buried, "must drive the slope"),
+        "thermal_survival": (p.thermal_survival, f"{p.cold_temperature_c:.0f} to {p.hot_temperature_c:.0f} °C, allowed "
+                             f"{model.operating_temperature_min_c:g} to {model.operating_temperature_max_c:g}")}
 
 
 def failing(design, performance, scenario):
@@ -200,14 +193,13 @@ def failing(design, performance, scenario):
     return bad
 
 
-def as_python(design, scenario, model, *calls, baseline=None):
-    """Python that rebuilds a single design, mission and model, and runs as it stands.
+def as_python(design, scenario, model, *calls, **others):
+    """Python that rebuilds single records and runs as it stands.
 
-    `calls` are lines that use `design`, `mission`, `model` and, where a second design is given, `baseline`.
+    `calls` are lines that use `design`, `mission`, `model` and the names of `others`, which are designs too.
     """
-    rovers = {"design": design} | ({} if baseline is None else {"baseline": baseline})
-    single(**rovers, scenario=scenario, model=model)
-    records = {**rovers, "soil": scenario.soil, "mission": scenario, "model": model}
+    single(design=design, **others, scenario=scenario, model=model)
+    records = {"design": design, **others, "soil": scenario.soil, "mission": scenario, "model": model}
     return "\n".join(["import rdk", "", *(_built(*pair) for pair in records.items()), *calls, ""])
 
 
@@ -229,6 +221,6 @@ def _built(name, record):
             return f"rdk.sky.Skyline({value.azimuth_deg.tolist()}, {value.elevation_deg.tolist()})"
         return f"float({str(value)!r})" if value in (np.inf, -np.inf) else repr(value)
 
-    values = {f.name: (getattr(record, f.name), f.default) for f in dataclasses.fields(record) if f.name != "problem"}
-    lines = [f"\n    {field}={literal(value)}," for field, (value, default) in values.items() if value != default]
+    lines = [f"\n    {f.name}={literal(getattr(record, f.name))}," for f in dataclasses.fields(record)
+             if f.name != "problem" and getattr(record, f.name) != f.default]
     return f"{name} = rdk.{type(record).__name__}({''.join(lines)}" + "\n" * bool(lines) + ")"

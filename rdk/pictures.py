@@ -327,9 +327,10 @@ def fleet(result, rovers, size=SIZE, spans=None, ghosts=()):
                         f"{result.total_mass_kg:.1f} kg; on the same mission {rest}.")
 
 
-def why(metric, names, values, before, after, baseline, size=SIZE):
-    """Contributions of the design variables as steps from a baseline to this design."""
-    values, (words, unit) = np.asarray(values, float), label(metric)
+def why(metric, names, shares, baseline, size=SIZE):
+    """Contributions of the design variables, an Attribution, as steps from a baseline to this design."""
+    values, (words, unit) = shares.contributions[metric], label(metric)
+    before, after = (getattr(found, metric) for found in (shares.baseline_performance, shares.performance))
     least = max(1e-3 * np.abs(values).max(initial=0), 1e-9 * max(abs(before), abs(after)), 1e-12)    # below: rounding
     order = [i for i in np.argsort(-np.abs(values)) if abs(values[i]) > least]
     shown = order[:min(max(int((size[1] - 88) / 15) - 3, 1), 9)]
@@ -416,35 +417,35 @@ def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
                         f"{np.nanmax(grid):.3g}; the circle marks this design.")
 
 
-def front(x, y, colour, names, here, size=SIZE, picked=None, faded=None, title="", stale="", ghosts=(), designs=None):
+def front(found, designs, names, result, size=SIZE, odds=None, picked=None, faded=None, title="", stale="", ghosts=()):
     """A front: one metric against another, coloured by a third; dots can be picked, this design is a cross.
 
-    `faded` marks dots that miss a demand, `stale` says that the front belongs to another mission; `designs` are told
-    with the dots. The scale of the metric "odds" is 0 to 1; a dot whose colour is not yet known is hollow.
+    `faded` marks dots that miss a demand, `stale` says that the front belongs to another mission. The scale of the
+    metric "odds" is 0 to 1; a dot whose colour is not yet known is hollow.
     """
-    if not len(x):
+    if not len(found):
         return message(size, f"{title}: an empty front, no design meets the constraints.")
-    others = [(*(float(getattr(other, field)) for field in names[:2]), name, "s b f" + cls[1], "dot", "l " + cls, 8)
-              for name, cls, other in ghosts]
-    axes = Axes(size, *(span(values, here[i], [at[i] for at in others]) for i, values in enumerate((x, y))),
+    x, y, colour = columns = [odds if name == "odds" else getattr(found, name) for name in names]
+    spots = [(*(getattr(other, field) for field in names[:2]), *look) for *look, other in (
+        *((name, "s b f" + cls[1], "dot", "l " + cls, 8, other) for name, cls, other in ghosts),
+        ("this design", "s b", "cross", "l c1", 6, result))]
+    axes = Axes(size, *(span(values, [at[i] for at in spots]) for i, values in enumerate((x, y))),
                 top=62 if stale else 44, right=86)
     axes.frame(*label(names[1]), named(names[0]), count=5)
     low, high = (0.0, 1.0) if names[2] == "odds" else span(colour, room=0)
-    columns = [(*label(name), values.tolist()) for name, values in zip(names, (x, y, colour))]
-    columns += [] if designs is None else [(v.label, v.unit if v.unit != "1" else "", getattr(designs, n).tolist())
-                                           for n, v in DESIGN_SPACE.items()]
-    for i, point in enumerate(zip(*(values for *_, values in columns))):
-        said = [f"{words} {value:.4g} {unit}".strip() for (words, unit, _), value in zip(columns, point)
-                if value == value]
+    told = [*((*label(name), values) for name, values in zip(names, columns)),
+            *((v.label, v.unit if v.unit != "1" else "", getattr(designs, name)) for name, v in DESIGN_SPACE.items())]
+    for i in range(len(x)):
+        said = [f"{words} {values[i]:.4g} {unit}".strip() for words, unit, values in told if values[i] == values[i]]
         axes.mark(x[i], y[i], cls="rdk-pick", size=6, inside=f"<title>{', '.join(said)}</title>",
                   fill=shade((colour[i] - low) / (high - low)) if colour[i] == colour[i] else "transparent",
                   stroke="currentColor", stroke_width=2.6 if i == picked else 0.7,
                   opacity=0.25 if faded is not None and faded[i] else 1, tabindex=0 if i == (picked or 0) else -1,
                   role="button", data_do=f"point:{i}", aria_label=", ".join(said[:3]))
-    axes.spots(*others, (*here[:2], "this design", "s b", "cross", "l c1", 6))
+    axes.spots(*spots)
     axes.scale(low, high, label(names[2])[0])
     axes.parts = [element("g", "", "".join(axes.parts), opacity=0.45 if stale else 1), text(8, 30, stale, "bad s"),
                   text(8, 14, title, "b" if 7.5 * len(title) < size[0] else "s b")]
-    spans = ", ".join(f"{named(n)} from {min(v):.3g} to {max(v):.3g}" for n, v in zip(names, (x, y, colour))
+    spans = ", ".join(f"{named(n)} from {min(v):.3g} to {max(v):.3g}" for n, v in zip(names, columns)
                       if np.isfinite(v).all())
     return axes.picture(f"{title}. Front of {len(x)} designs: {spans}. {stale}".rstrip(), "group")

@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from . import catalog, explain, pictures
-from ._fields import require
 from .catalog import write
-from .design import DESIGN_SPACE, Design, Model, Scenario
+from .design import DESIGN_SPACE, Design, Model
 from .mission import evaluate
 from .rover_picture import rover_picture
 from .sampling import attribution, holds, intervals, single, uncertain_inputs
@@ -53,6 +52,7 @@ explorer.</p>
 </body></html>
 """)
 SIZE = 470, 215                                          # of a picture, in pixels of its own
+_text = functools.partial(html.escape, quote=False)
 
 
 class Requirement(NamedTuple):
@@ -62,8 +62,7 @@ class Requirement(NamedTuple):
     the uncertain input with the strongest rank correlation to the metric ("" where the metric does not vary).
     """
     metric: str
-    sign: str
-    limit: float
+    words: str
     nominal: float
     low: float
     high: float
@@ -71,44 +70,34 @@ class Requirement(NamedTuple):
     share: float
     driver: str
 
-    @property
-    def words(self):
-        """The demand, in words."""
-        name, unit = explain.label(self.metric)
-        asked = f"{name} {'≥' if self.sign == '>=' else '≤'} {self.limit:g} {unit}".rstrip()
-        return name if self.metric == "feasible" else asked
-
 
 def asked(scenario):
     """The demands of a mission's problem; that the rover drives the mission comes first."""
     return [("feasible", ">=", 1.0), *posed(scenario)[1].constraints]
 
 
-def requirements(design, scenario, *, draws=DRAWS, seed=0, model=Model()):
+def requirements(design, scenario, *, draws=DRAWS, model=Model()):
     """The demands of a mission's problem on a single design as Requirements, each with its chance to hold.
 
     A share covers the table of uncertainties and nothing that the models leave out.
     """
     from scipy.stats import rankdata                     # slow to load
     single(design=design, scenario=scenario, model=model)
-    found = intervals(design, scenario, draws=draws, seed=seed, model=model)
-    ranks = {name: rankdata(values) for name, values in uncertain_inputs(scenario, draws=draws, seed=seed,
-                                                                         model=model).items() if np.ptp(values) > 0}
-    rows = []
+    found, rows = intervals(design, scenario, draws=draws, model=model), []
+    ranks = {name: rankdata(values) for name, values in uncertain_inputs(scenario, draws=draws, model=model).items()
+             if np.ptp(values) > 0}
     for demand in asked(scenario):
         metric, sign, limit = demand
-        values = np.nan_to_num(np.asarray(getattr(found.draws, metric), float))
-        strength = {name: abs(np.corrcoef(rank, rankdata(values))[0, 1]) for name, rank in ranks.items()
-                    } if np.ptp(values) > 0 else {}
-        rows.append(Requirement(metric, sign, float(limit), *(float(v) for v in (
-            found.nominal[metric], found.low[metric], found.high[metric])), bool(holds(found.performance, demand)),
-            float(holds(found.draws, demand).mean()), max(strength, key=strength.get, default="")))
+        name, unit = explain.label(metric)
+        words = name if metric == "feasible" else f"{name} {'≥' if sign == '>=' else '≤'} {limit:g} {unit}".rstrip()
+        values, driver = np.nan_to_num(np.asarray(getattr(found.draws, metric), float)), ""
+        if np.ptp(values) > 0:
+            strength = np.corrcoef([*ranks.values(), rankdata(values)])[-1, :-1]
+            driver = list(ranks)[np.abs(strength).argmax()]
+        ends = (float(read[metric]) for read in (found.nominal, found.low, found.high))
+        rows.append(Requirement(metric, words, *ends, bool(holds(found.performance, demand)),
+                                float(holds(found.draws, demand).mean()), driver))
     return rows
-
-
-def joint_odds(design, scenario, *, draws=DRAWS, seed=0, model=Model()):
-    """Share of the Monte-Carlo draws in which a design drives and meets every demand of the mission at once."""
-    return intervals(design, scenario, draws=draws, seed=seed, model=model).share(asked(scenario))
 
 
 @functools.cache
@@ -117,14 +106,14 @@ def published():
     return catalog.rover_names(), Design.stack(map(catalog.rover, catalog.rover_names()))
 
 
-def report(design, scenario, title, notes="", *, front=None, baseline=None, baseline_name="the baseline",
-           why="total_mass_kg", bounds=None, candidates=None, model=Model(), draws=DRAWS):
+def report(design, scenario, title="", notes="", *, front=None, baseline=None, baseline_name="the baseline",
+           bounds=None, candidates=None, model=Model(), draws=DRAWS):
     """A one-page report on a single design and the demands of a single mission's problem, as the text of an HTML file.
 
     `notes` say what to know beyond the tables: choices, risks, doubts; an empty line starts a paragraph. A `front` is
-    shown with the design on it, in place of the published rovers. The difference to `baseline` in the metric `why` is
-    attributed to the variables; by default it is another rover, published and nearest in mass. `bounds` has limits
-    (low, high) of variables in place of those in DESIGN_SPACE; `candidates` are other designs by name, for a table.
+    shown with the design on it, in place of the published rovers. The difference to `baseline` in mass is attributed to
+    the variables; by default it is another rover, published and nearest in mass. `bounds` has limits (low, high) of
+    variables in place of those in DESIGN_SPACE; `candidates` are other designs by name, for a table.
 
     Examples
     --------
@@ -133,8 +122,6 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
     >>> "<h1>Rashid-1 on a mare</h1>" in page
     True
     """
-    if not isinstance(title, str) or not title.strip():
-        raise ValueError(f"title must be a text; got {title!r}")
     demands = requirements(design, scenario, draws=draws, model=model)
     result = evaluate(design, scenario, model=model)
     names, fleet = published()
@@ -142,18 +129,14 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
     if baseline is None:
         order = np.abs(np.log(rovers.total_mass_kg / result.total_mass_kg)).argsort()
         baseline, baseline_name = next((fleet[i], names[i]) for i in order.tolist() if fleet[i] != design)
-    shares = attribution(design, baseline, scenario, model=model)
-    if why not in shares.contributions:
-        raise ValueError(f"why: no metric {why!r}; choose from {', '.join(shares.contributions)}")
+    shares = attribution(design, baseline, scenario, model=model, metrics=("total_mass_kg",))
     drawn = [_on_front(front, result) if front is not None and len(front) else
              pictures.fleet(result, (rovers.total_mass_kg, rovers.range_km, names), SIZE),
              pictures.mass(result, SIZE), pictures.log(result, scenario, model.soc_initial, SIZE),
-             pictures.why(why, [variable.label for variable in DESIGN_SPACE.values()], shares.contributions[why],
-                          getattr(shares.baseline_performance, why), getattr(shares.performance, why), baseline_name,
-                          SIZE)]
+             pictures.why("total_mass_kg", [v.label for v in DESIGN_SPACE.values()], shares, baseline_name, SIZE)]
     designs = {"this design": design, **(candidates or {})}
-    stack = Design.stack(designs.values())
-    odds, found = joint_odds(stack, scenario, draws=draws, model=model), evaluate(stack, scenario, model=model)
+    found = intervals(Design.stack(designs.values()), scenario, draws=draws, model=model)
+    odds = found.share(asked(scenario))
     missed = [d.words for d in demands if not d.met]
     verdict = f"Misses {len(missed)} of {len(demands)} demands: {'; '.join(missed)}." if missed else (
         f"Meets all {len(demands)} demands of the mission.")
@@ -163,7 +146,8 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
                for name, (low, high) in limits.items()}
     at_risk = sorted((d for d in demands if d.share < 0.995), key=lambda d: d.share)[:3]
     return PAGE.substitute(
-        title=_text(title), mission=_text(_mission_words(scenario)), mark=" missed" * bool(missed),
+        title=_text(title or f"A rover for {scenario.name}"), mission=_text(_mission_words(scenario)),
+        mark=" missed" * bool(missed),
         verdict=_text(f"{verdict} All hold at once in {100 * odds[0]:.0f} % of the draws."),
         binds=_text(explain.binding(design, scenario, result, model=model).sentence),
         rover=rover_picture(design, result, scenario, width=250),
@@ -179,10 +163,10 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
             f"“{d.words}” fails in {100 * (1 - d.share):.0f} % of the draws"
             + (f"; it moves most with the {explain.label(d.driver)[0]}." if d.driver else ".") for d in at_risk]
             or ["Every demand holds in all draws of the uncertain inputs."]),
-        candidates="<h2>Candidates</h2>" * bool(candidates) + _table(
+        candidates="" if not candidates else "<h2>Candidates</h2>" + _table(
             "design;mass;range;slope capability;all demands hold in", [
                 (False, name, f"{p.total_mass_kg:.2f} kg", f"{p.range_km:.3g} km", f"{p.slope_capability_deg:.1f}°",
-                 f"{100 * share:.0f} %") for name, p, share in zip(designs, found, odds)]) * bool(candidates),
+                 f"{100 * share:.0f} %") for name, p, share in zip(designs, found.performance, odds)]),
         drawn="\n".join(drawn), notes="<h2>Notes</h2>" * bool(notes.strip()) + _paragraphs(
             part for part in notes.split("\n\n") if part.strip()),
         draws=draws, model=_text(", ".join(f"{name} = {value:g}" for name, value in changed.items())
@@ -190,15 +174,9 @@ def report(design, scenario, title, notes="", *, front=None, baseline=None, base
         data=base64.b64encode(catalog.to_json(design, scenario).encode()).decode())
 
 
-def write_report(design, scenario, path, title=None, notes="", **options):
+def write_report(design, scenario, path, title="", notes="", **options):
     """Write the page of `report` to an HTML file; `options` go to `report`. Returns the path."""
-    require(design=(design, Design), scenario=(scenario, Scenario))
-    return write(report(design, scenario, f"A rover for {scenario.name}" if title is None else title, notes, **options),
-                 path)
-
-
-def _text(words):
-    return html.escape(str(words), quote=False)
+    return write(report(design, scenario, title, notes, **options), path)
 
 
 def _paragraphs(words):
@@ -221,9 +199,7 @@ def _on_front(front, result):
 
     others = sorted((name for name in front.problem.objectives if name != "total_mass_kg"), key=spread, reverse=True)
     names = ["total_mass_kg", *others, "range_km", "slope_capability_deg"][:3]
-    return pictures.front(*(np.asarray(getattr(front.performance, name), float) for name in names), names,
-                          [float(getattr(result, name)) for name in names], SIZE,
-                          title=f"Front of {len(front)} designs", designs=front.designs)
+    return pictures.front(front.performance, front.designs, names, result, SIZE, title=f"Front of {len(front)} designs")
 
 
 def _mission_words(scenario):

@@ -24,6 +24,7 @@ from rdk.explorer import app as explorer_module
 from rdk.explorer.inputs import DESIGN, MISSION, NUMBERS, OWN, SCRIPTS, SOIL, VIEWS
 from rdk.explorer.worker import Refresher
 from rdk.rover_picture import contact, failing, rover_picture, wheel_picture
+from rdk.sampling import Attribution
 
 MARE, POLAR = "equatorial_mare_traverse", "polar_prospecting"
 CANONICAL = rdk.scenario_names("canonical")
@@ -84,7 +85,7 @@ def assert_current(explorer):
     for name, value in wanted.numbers().items():
         np.testing.assert_array_equal(explorer.result.numbers()[name], value, err_msg=name)
     words = shown(explorer)
-    assert explain.verdict(explorer.design, explorer.scenario, wanted, model=explorer.model)[1] in words
+    assert explain.verdict(explorer.design, explorer.scenario, wanted)[1] in words
     assert answers.words(wanted.total_mass_kg, 2, "kg") in words and answers.words(wanted.slope_capability_deg, 1,
                                                                                    "°") in words
     assert "rdk-old" not in explorer.parts["verdict"].value
@@ -420,9 +421,9 @@ def explained(design, mission):
     assert verdict.startswith("Drives") == (result.range_km > 0) and met <= (result.thermal_survival
                                                                              and result.range_km > 0)
     assert ("freezes" in verdict or "overheats" in verdict) != result.thermal_survival
-    limits = {limit.metric: limit for limit in explain.limits(design, mission, result)}
-    assert all(not re.search(r"\bnan\b|\binf\b", limit.words) for limit in limits.values())
-    met = all(limits[n].met for n in ("stalled", "range_km", "energy_balance_pct", "obstacle_capability_m"))
+    limits = explain.limits(design, mission, result)
+    assert all(not re.search(r"\bnan\b|\binf\b", words) for _, words in limits.values())
+    met = all(limits[n][0] for n in ("stalled", "range_km", "energy_balance_pct", "obstacle_capability_m"))
     assert met == result.feasible
     sound(rover_picture(design, result, mission))
     sound(wheel_picture(design, result, mission))
@@ -1073,15 +1074,20 @@ def test_the_python_reproduces_what_is_shown(explorer, script):
 # ---- pictures -------------------------------------------------------------------------------------------------
 
 def test_why_adds_up_and_says_when_there_is_no_difference():
+    def drawn(shares, after):
+        ends = rdk.evaluate(rdk.random_designs(2, seed=1), rdk.scenario(MARE)).replace(range_km=np.array([10.0, after]))
+        return pictures.why("range_km", list("abcdefghijk"), Attribution({"range_km": shares}, ends[1], ends[0]),
+                            "a baseline")
+
     shares = np.array([3.0, -1.0, 0.5, 0, 0, 0, 0, 0, 0, 0, 1e-17])
-    picture = pictures.why("range_km", list("abcdefghijk"), shares, 10.0, 12.5, "a baseline")
+    picture = drawn(shares, 12.5)
     assert sound(picture).endswith("a +3; b -1; c +0.5.")
     bars = re.findall(r'<rect class="bar ([^"]*)" x="([^"]*)" y="[^"]*" width="([^"]*)"', picture)
     assert [look for look, *_ in bars] == ["f0", "f0", "l c1", "f0", "f0"]         # open where it falls; both ends
     x, width = np.array([[float(v) for v in bar[1:]] for bar in bars]).T
     np.testing.assert_allclose(width[1:4] / width[1], [1, 1 / 3, 1 / 6], rtol=1e-3)    # five digits are written
     np.testing.assert_allclose([x[1], x[2] + width[2], x[3]], [x[0], x[1] + width[1], x[2]], rtol=1e-4)    # a staircase
-    same = sound(pictures.why("range_km", list("abcdefghijk"), shares * 1e-17, 10.0, 10.0, "a baseline"))
+    same = sound(drawn(shares * 1e-17, 10.0))
     assert same.startswith("The same range as a baseline")
 
 

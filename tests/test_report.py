@@ -17,7 +17,7 @@ import rdk
 from rdk import catalog, pictures, sky
 from exercises.capstone import SWIRL
 from rdk.design import Problem
-from rdk.report import Requirement, joint_odds, report, requirements, write
+from rdk.report import report, requirements, write
 
 MARE = rdk.scenario("equatorial_mare_traverse")
 RASHID = rdk.rover("Rashid-1")
@@ -82,7 +82,7 @@ def test_joint_odds_and_candidates_side_by_side():
     asked = replace(MARE, problem=Problem(constraints=(("total_mass_kg", "<=", 16.5), ("range_km", ">=", 70))))
     draws = rdk.intervals(RASHID, asked, draws=200).draws
     odds = np.mean(draws.feasible & (draws.total_mass_kg <= 16.5) & (draws.range_km >= 70))
-    assert 0 < odds < 1 and joint_odds(RASHID, asked, draws=200) == odds
+    assert 0 < odds < 1
     text = report(RASHID, asked, "x", candidates={"B <lighter>": replace(RASHID, chassis_mass_kg=2.0)}, draws=200)
     assert f"All hold at once in {100 * odds:.0f} % of the draws." in text
     rows = {cells[0]: cells for _, cells in Page(text).rows if cells and cells[0] in ("this design", "B <lighter>")}
@@ -108,13 +108,11 @@ def test_limits_of_the_project_are_shown_and_a_variable_outside_is_marked():
 def test_demands_are_those_of_the_scenario_with_the_drive_itself_first():
     asked = replace(MARE, required_obstacle_height_m=0.04, problem=Problem(
         constraints=(("range_km", ">=", 50), ("total_mass_kg", "<=", 16))))
-    found = requirements(RASHID, asked, draws=200, seed=3)
-    assert [(d.metric, d.sign, d.limit) for d in found] == [
-        ("feasible", ">=", 1.0), ("range_km", ">=", 50), ("total_mass_kg", "<=", 16),
-        ("obstacle_capability_m", ">=", 0.04)]
+    found = requirements(RASHID, asked, draws=200)
+    assert [d.metric for d in found] == ["feasible", "range_km", "total_mass_kg", "obstacle_capability_m"]
     assert [d.words for d in found] == ["drives the mission", "range ≥ 50 km", "mass ≤ 16 kg",
                                         "obstacle capability ≥ 0.04 m"]
-    nominal, spans = rdk.evaluate(RASHID, asked), rdk.intervals(RASHID, asked, draws=200, seed=3)
+    nominal, spans = rdk.evaluate(RASHID, asked), rdk.intervals(RASHID, asked, draws=200)
     mass = found[2]
     assert mass.nominal == nominal.total_mass_kg > 16 and not mass.met
     assert (mass.low, mass.high) == (spans.low["total_mass_kg"], spans.high["total_mass_kg"])
@@ -151,10 +149,10 @@ def test_front_baseline_and_changed_coefficients_show():
     front = rdk.pareto_front(MARE, population=20, generations=3, seed=1, constraints=[])
     assert len(front) > 2
     text = report(RASHID, MARE, "x", front=front, baseline=rdk.rover("Tenacious"), baseline_name="Tenacious",
-                  why="slope_capability_deg", model=rdk.Model(drivetrain_efficiency=0.7), draws=20)
+                  model=rdk.Model(drivetrain_efficiency=0.7), draws=20)
     alts = Page(text).pictures
     assert alts[1].startswith(f"Front of {len(front)} designs") and "(Tenacious)" in alts[4]
-    assert "slope capability (°)" in alts[4] and "Model: drivetrain_efficiency = 0.7." in text
+    assert "mass (kg)" in alts[4] and "Model: drivetrain_efficiency = 0.7." in text
     assert "Model: the paper's coefficients." in report(RASHID, MARE, "x", draws=20)
 
 
@@ -168,8 +166,6 @@ def test_a_rover_that_stalls_or_sinks_still_has_a_page():
 
 
 @pytest.mark.parametrize("change, words", [
-    ({"title": " "}, "title must be a text"), ({"title": None}, "title must be a text"),
-    ({"why": "speed"}, "why: no metric 'speed'; choose from"),
     ({"design": rdk.random_designs(3, seed=1)}, "design must be a single one"),
     ({"scenario": replace(MARE, slope_deg=[1.0, 2.0])}, "scenario must be a single one"),
     ({"model": rdk.Model(shear_scale=[0.9, 1.0])}, "model must be a single one")])
@@ -183,9 +179,9 @@ def test_same_inputs_same_page():
 
 
 def test_requirement_words_keep_units():
-    d = Requirement("minimum_soc", ">=", 0.2, 0.3, 0.2, 0.4, True, 1.0, "")
-    assert d.words == "lowest charge ≥ 0.2" and d._replace(metric="sinkage_m",
-                                                                    sign="<=").words == "sinkage ≤ 0.2 m"
+    demands = ("minimum_soc", ">=", 0.2), ("sinkage_m", "<=", 0.2)
+    found = requirements(RASHID, replace(MARE, problem=Problem(constraints=demands)), draws=20)
+    assert [d.words for d in found[1:]] == ["lowest charge ≥ 0.2", "sinkage ≤ 0.2 m"]
 
 
 def test_writing_replaces_the_file_in_one_step(tmp_path, monkeypatch):
@@ -308,8 +304,8 @@ def test_each_dot_of_a_front_tells_its_design_and_odds_have_a_scale_from_0_to_1(
     designs = rdk.random_designs(5, seed=2)
     found = rdk.evaluate(designs, MARE)
     odds = np.linspace(0.4, 0.6, 5)
-    picture = pictures.front(found.total_mass_kg, found.range_km, odds, ("total_mass_kg", "range_km", "odds"),
-                             (20, 30, 0.5), designs=designs)
+    picture = pictures.front(found, designs, ("total_mass_kg", "range_km", "odds"), rdk.evaluate(RASHID, MARE),
+                             odds=odds)
     titles = re.findall(r"<title>([^<]*)</title>", picture)
     for i, told in enumerate(titles):
         assert f"mass {found.total_mass_kg[i]:.4g} kg" in told and f"odds of the demands {odds[i]:.4g}" in told

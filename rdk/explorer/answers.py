@@ -11,7 +11,7 @@ from ..mission import evaluate
 from ..report import published
 from ..sampling import attribution, holds, replaced, sweep, uncertain_inputs
 from ..uncertainty import DRAWS
-from .inputs import METRICS, NUMBERS, ODDS, label
+from .inputs import METRICS, NUMBERS, label
 from .page import card, verdict
 
 BAND_DRAWS, CURVE, MAP = 256, 61, 25                     # of the readings' draws the first; points of a sweep
@@ -85,8 +85,8 @@ def cards(a):
 
 def readings(a):
     """Rows of the table of all readings: name, value, interval, limit."""
-    needed = {limit.metric: ("✓ met: " if limit.met else "✗ missed: ") + limit.words
-              for limit in explain.limits(a.design, a.scenario, a.result, model=a.model)}
+    limits = explain.limits(a.design, a.scenario, a.result, model=a.model)
+    needed = {name: ("✓ met: " if met else "✗ missed: ") + need for name, (met, need) in limits.items()}
     rows = []
     for name, digits in METRICS.items():
         span = "" if a.spans is None else " to ".join(words(end[name], digits) for end in (a.spans.low, a.spans.high))
@@ -101,7 +101,7 @@ def readings(a):
 
 def answer(a):
     """HTML of the verdict with its readings, and the rows of the table."""
-    met, sentence = explain.verdict(a.design, a.scenario, a.result, model=a.model)
+    met, sentence = explain.verdict(a.design, a.scenario, a.result)
     shown, table = cards(a), readings(a)
     odds = ""
     if a.spans is not None:
@@ -148,8 +148,7 @@ def why(a, size):
         return pictures.message(size, f"{label(metric)[0]} has no value in some mixture of the two designs (a buried "
                                 "wheel), so that its difference cannot be shared out. Choose another metric.")
     names = [label(n)[0] if n in NUMBERS else "wheels" for n in DESIGN_SPACE]
-    return pictures.why(metric, names, found.contributions[metric], float(getattr(found.baseline_performance, metric)),
-                        float(getattr(found.performance, metric)), a.now["baseline"], size)
+    return pictures.why(metric, names, found, a.now["baseline"], size)
 
 
 def span_of(name, count):
@@ -220,17 +219,15 @@ def front(a, size):
                 'no other beats in every goal.<br><br><button type="button" class="rdk-btn rdk-main" data-do="run">'
                 "Run search</button></div>")
     names = [a.now["front_" + key] for key in ("x", "y", "colour")]
-    rated = a.odds[1] if a.odds[0] == (front, asked(a.scenario.problem.constraints)) else None
-    columns = [np.asarray(getattr(front.performance, name), float) if name != ODDS
-               else np.full(len(front), np.nan) if rated is None else rated for name in names]
+    rated = a.odds[1] if a.odds[0] == (front, asked(a.scenario.problem.constraints)) else np.full(len(front), np.nan)
     where = front.scenario.name.replace("_", " ")
     stale = "" if fits(front, a.scenario, a.model) else f"searched for {where} as it was: run again"
     same = np.all([np.equal(getattr(front.designs, name), a.now[name]) for name in DESIGN_SPACE], axis=0)
     picked = int(same.argmax()) if same.any() else None
     title = f"{'Live front' if a.now['live'] else 'Front'} of {where}: {len(front)} designs"
-    return pictures.front(*columns, names, [float(getattr(a.result, name)) for name in names[:2]], size, picked,
+    return pictures.front(front.performance, front.designs, names, a.result, size, rated, picked,
                           ~meets(front.performance, a.scenario.problem.constraints), title, stale or front.message,
-                          a.ghosts, front.designs)
+                          a.ghosts)
 
 
 PICTURES = {

@@ -190,7 +190,7 @@ class Explorer(State):
         if self.error:
             return self.error
         rows = [f"{name:24}{value:>12}   {span:22}{limit}".rstrip() for name, value, span, limit in self._table]
-        return "\n".join([explain.verdict(self.design, self.scenario, self.result, model=self.model)[1],
+        return "\n".join([explain.verdict(self.design, self.scenario, self.result)[1],
                           self.binding.sentence, self.binding.detail, *rows])
 
     # ---- answers ----------------------------------------------------------------------------------------------
