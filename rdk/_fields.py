@@ -9,13 +9,10 @@ import numpy as np
 
 Real = float | np.ndarray                                # numbers that broadcast
 
-_ANY = dict(minimum=-math.inf, maximum=math.inf, above=None, below=None, whole=False, choices=None, infinite=False,
-            scalar=False, optional=False)
-
 
 def number(minimum=-math.inf, maximum=math.inf, *, default=dataclasses.MISSING, **more):
     """A dataclass field for numbers within the limits that `check` knows; `more` may hold a `doc` and other remarks."""
-    return dataclasses.field(default=default, metadata=_ANY | dict(minimum=minimum, maximum=maximum) | more)
+    return dataclasses.field(default=default, metadata=dict(minimum=minimum, maximum=maximum) | more)
 
 
 def described(doc, **more):
@@ -23,7 +20,7 @@ def described(doc, **more):
     return dataclasses.field(metadata=dict(doc=doc), **more)
 
 
-def _allowed(minimum, maximum, above, below, whole, choices, infinite, optional, **_):
+def _allowed(minimum, maximum, above=None, below=None, whole=False, choices=None, infinite=False, optional=False, **_):
     """Words for what a field accepts."""
     if choices:
         return "one of " + ", ".join(f"{c:g}" for c in choices)
@@ -36,19 +33,20 @@ def _allowed(minimum, maximum, above, below, whole, choices, infinite, optional,
     return (words if kind or infinite else " and ".join(filter(None, [words, "finite"]))) + optional * " or None"
 
 
-def check(name, value, minimum=-math.inf, maximum=math.inf, **limits):
+def check(name, value, minimum=-math.inf, maximum=math.inf, *, above=None, below=None, whole=False, choices=None,
+          infinite=False, scalar=False, optional=False, **_):
     """`value` as a float or a read-only float array, or a ValueError that names it and says what is allowed.
 
     `minimum` and `maximum` are allowed themselves; `above` and `below`, in their place, are not. More limits: `whole`
     numbers only (they come back as integers), these `choices` only, `infinite` (positive infinity too), `scalar` (no
     arrays), `optional` (None too).
     """
-    limits = _ANY | dict(minimum=minimum, maximum=maximum) | limits
-    if limits["optional"] and value is None:
+    if optional and value is None:
         return None
 
     def refusal(value):
-        return ValueError(f"{name} must be {_allowed(**limits)}; got {value:.200}")
+        allowed = _allowed(minimum, maximum, above, below, whole, choices, infinite, optional)
+        return ValueError(f"{name} must be {allowed}; got {value:.200}")
 
     listed = isinstance(value, (list, tuple))
     if any(isinstance(part, np.ma.MaskedArray) for part in (value if listed else [value])):
@@ -61,24 +59,23 @@ def check(name, value, minimum=-math.inf, maximum=math.inf, **limits):
             isinstance(part, (bool, np.bool_)) for part in np.asarray(value, object).flat):
         raise refusal(repr(value))                       # a word, None, yes or no
     array = array.astype(float)                          # a copy: the caller's array may change later
-    if limits["scalar"] and array.ndim:
+    if scalar and array.ndim:
         raise ValueError(f"{name} must be one number, not an array; got {array.size} values")
-    above, below = limits["above"], limits["below"]
     good = np.isfinite(array)
-    if limits["infinite"]:
+    if infinite:
         good |= array == math.inf
     good &= (array >= minimum if above is None else array > above)
     good &= (array <= maximum if below is None else array < below)
-    if limits["whole"]:
+    if whole:
         good &= (array == np.floor(array)) & (np.abs(array) < 2**53)         # beyond, floats skip whole numbers
-    if limits["choices"]:
-        good &= np.isin(array, limits["choices"])
+    if choices:
+        good &= np.isin(array, choices)
     if not good.all():
         if not array.ndim:
             raise refusal(repr(value))
         first = tuple(int(i) for i in np.argwhere(~good)[0])
         raise refusal(f"{array[first].item()!r} at index {first[0] if len(first) == 1 else first}")
-    if limits["whole"] or limits["choices"]:
+    if whole or choices:
         array = array.astype(int)
     if not array.ndim:
         return array.item()
@@ -204,16 +201,15 @@ def _picked(value, shape, index):
     """Lanes of a number, an array or a record of such; what is computed when it is first read stays for later."""
     if isinstance(value, Record):
         return dataclasses.replace(value, **{
-            name: functools.partial(_picked_later, value, name, shape, index) if callable(vars(value).get(name))
-            else _picked(getattr(value, name), shape, index)
-            for name in _names(type(value)) if name not in value.apart})
+            name: functools.partial(_picked_field, value, name, shape, index) if callable(vars(value).get(name))
+            else _picked_field(value, name, shape, index) for name in _names(type(value)) if name not in value.apart})
     if isinstance(value, np.ndarray) and value.ndim:
         value = np.broadcast_to(value, shape)[index]
         return value if np.ndim(value) else value.item()
     return value
 
 
-def _picked_later(record, name, shape, index):
+def _picked_field(record, name, shape, index):
     return _picked(getattr(record, name), shape, index)
 
 

@@ -254,12 +254,14 @@ def from_json(text: str) -> tuple[Design, Scenario | None]:
             if name in kept["design"]:
                 raise ValueError(f"the file's design has both {old!r} and {name!r}")
             kept["design"][name] = kept["design"].pop(old)
-    design = _design(kept["design"])
+    design = built(Design, kept["design"])
+    if len(design.shape) > 1 or 0 in design.shape:
+        raise ValueError(f"the file must hold one design or a list of some; got shape {design.shape}")
     if kept.get("scenario") is None:
         return design, None
     try:
         scenario = built(Scenario, kept["scenario"])
-    except (KeyError, TypeError) as error:
+    except TypeError as error:
         raise ValueError(f"the file's scenario is damaged: {error!r}") from None
     if scenario.shape:
         raise ValueError("the file's scenario must hold single numbers")
@@ -291,7 +293,7 @@ def _number(value):
 
 
 def built(kind, values):
-    """A record from a JSON object; unknown fields are refused."""
+    """A record from a JSON object; unknown fields are refused, and missing ones."""
     where = kind.__name__.lower()
     if not isinstance(values, dict):
         raise ValueError(f"the file's {where} is damaged: it must be an object; got {values!r:.40}")
@@ -303,11 +305,13 @@ def built(kind, values):
             value = built(_PARTS[name], value)
         elif name == "constraints":
             value = [[_number(part) for part in demand] for demand in value]
-        elif name == "name":
-            value = str(value)
         elif known[name].metadata.get("infinite"):
             value = _number(value)
         fields[name] = value
+    missing = [name for name, f in known.items() if name not in fields
+               and f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING]
+    if missing:
+        raise ValueError(f"the file's {where} lacks {', '.join(missing)}")
     return kind(**fields)
 
 
@@ -337,15 +341,13 @@ def from_csv(text: str) -> Design:
         lines = lines[1:]                                # a spreadsheet's hint
     separator = max(",;\t", key=lines[0].count) if lines else ","
     try:
-        header, *rows = (line for line in csv.reader(lines, delimiter=separator, skipinitialspace=True, strict=True)
-                         if any(cell.strip() for cell in line))
+        rows = [row for row in csv.reader(lines, delimiter=separator, skipinitialspace=True, strict=True)
+                if any(cell.strip() for cell in row)]
     except csv.Error as error:
         raise ValueError(f"not a CSV file: {error}") from None
-    except ValueError:
-        header, rows = [], []
-    if not rows:
+    if len(rows) < 2:
         raise ValueError("the CSV file needs a header and at least one row")
-    header = [_ALIASES.get(name.strip(), name.strip()) for name in header]
+    header = [_ALIASES.get(name.strip(), name.strip()) for name in rows.pop(0)]
     missing = [n for n in DESIGN_SPACE if n not in header]
     if missing:
         hint = f"; is its separator a comma, a semicolon or a tab? It begins {lines[0].strip()[:40]!r}"
@@ -358,28 +360,15 @@ def from_csv(text: str) -> Design:
             raise ValueError(f"row {i} of the CSV file has {len(row)} values, its header {len(header)}"
                              + "; a decimal comma needs another separator of columns, such as a semicolon"
                              * (separator == "," and len(row) > len(header)))
-    columns = {name: [cell.strip() for cell in column] for name, column in zip(header, zip(*rows))
-               if name in DESIGN_SPACE}
-    cells = [cell for column in columns.values() for cell in column]
-    if separator != "," and any("," in cell for cell in cells):
-        if any("." in cell for cell in cells):
-            raise ValueError("the CSV file has decimal commas and points: use one decimal separator")
-        columns = {name: [cell.replace(",", ".", 1) for cell in column] for name, column in columns.items()}
+    columns = {name: column for name, column in zip(header, zip(*rows)) if name in DESIGN_SPACE}
+    marks = set("".join(cell for column in columns.values() for cell in column)) & set(",.")
+    if separator != "," and len(marks) > 1:
+        raise ValueError("the CSV file has decimal commas and points: use one decimal separator")
     values = {}
     for name, column in columns.items():
         try:
-            values[name] = [_float(cell) for cell in column]
+            values[name] = [_float(cell if separator == "," else cell.replace(",", ".", 1)) for cell in column]
         except ValueError as error:
             hint = "; the decimal separator of this file must be a point" * ("," in str(error))
             raise ValueError(f"{name} must be a number in every row; {error}{hint}") from None
-    return _design(values if len(rows) > 1 else {name: v[0] for name, v in values.items()})
-
-
-def _design(values):
-    missing = [n for n in DESIGN_SPACE if n not in values]
-    if missing:
-        raise ValueError(f"the file's design lacks {', '.join(missing)}")
-    design = built(Design, values)
-    if len(design.shape) > 1 or 0 in design.shape:
-        raise ValueError(f"the file must hold one design or a list of some; got shape {design.shape}")
-    return design
+    return Design(**values if len(rows) > 1 else {name: v[0] for name, v in values.items()})

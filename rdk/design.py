@@ -5,6 +5,7 @@ All three are frozen dataclasses of numbers. A population is the same dataclass 
 """
 import math
 import warnings
+from collections import namedtuple
 from dataclasses import dataclass, field, fields
 from typing import NamedTuple
 
@@ -67,6 +68,39 @@ _LOW = np.array([[v.low * (1 - 1e-12)] for v in DESIGN_SPACE.values()])
 _HIGH = np.array([[v.high * (1 + 1e-12)] for v in DESIGN_SPACE.values()])
 
 
+class Demand(namedtuple("Demand", "field sign limit")):
+    """A Performance field, ">=" or "<=", and its limit; `why` says what it is good for."""
+    __repr__ = tuple.__repr__
+
+    def __new__(cls, field: str, sign: str, limit: float, why: str = ""):
+        demand = super().__new__(cls, field, sign, limit)
+        demand.why = why
+        return demand
+
+    @classmethod
+    def all(cls, wanted, argument: str, infinite: bool = False) -> tuple:
+        """Demands from a list of such triples; the limit of a flag may be True or False."""
+        if not isinstance(wanted, (list, tuple)) or not all(isinstance(one, (list, tuple)) for one in wanted):
+            raise ValueError(f"{argument} must be a list of (field, '>=' or '<=', limit); got {wanted!r:.80}")
+        found = []
+        for one in wanted:
+            if len(one) != 3 or one[1] not in (">=", "<="):
+                raise ValueError(f"{argument} must be like ('range_km', '>=', 0.1); got {one!r:.80}")
+            limit = float(one[2]) if isinstance(one[2], (bool, np.bool_)) else one[2]
+            limit = check(f"{argument}: limit of {one[0]}", limit, infinite=infinite, scalar=True)
+            found.append(cls(*one[:2], limit, getattr(one, "why", "")))
+        return tuple(found)
+
+    def __str__(self):
+        return f"{self.field} {self.sign} {self.limit:g}"
+
+    def slack(self, performance: Record) -> np.ndarray:
+        """How far a performance is inside the limit, in the field's unit; below 0 where the demand fails."""
+        value = np.asarray(getattr(performance, self.field), float)
+        slack = value - self.limit if self.sign == ">=" else self.limit - value
+        return np.where(np.isnan(slack), -np.inf, slack)
+
+
 @dataclass(frozen=True)
 class Problem(Record):
     """How a scenario is posed to the optimiser; the defaults are the paper's for its traverse missions.
@@ -88,12 +122,7 @@ class Problem(Record):
         for name, way in self.objectives.items():
             if way not in ("max", "min"):
                 raise ValueError(f"objectives must be ways: {name} must be 'max' or 'min'; got {way!r:.80}")
-        if not (isinstance(self.constraints, (list, tuple)) and all(
-                isinstance(c, (list, tuple)) and len(c) == 3 and c[1] in (">=", "<=") for c in self.constraints)):
-            raise ValueError(f"constraints must be like ('range_km', '>=', 0.1) each; got {self.constraints!r:.80}")
-        demands = tuple((name, sign, check(f"limit of {name}", limit, infinite=True, scalar=True))
-                        for name, sign, limit in self.constraints)
-        object.__setattr__(self, "constraints", demands)
+        object.__setattr__(self, "constraints", Demand.all(self.constraints, "constraints", infinite=True))
         super().__post_init__()
 
     def _key(self):
@@ -101,8 +130,7 @@ class Problem(Record):
 
     def _summary(self):
         import pandas as pd
-        words = [*(f"{way} {name}" for name, way in self.objectives.items()),
-                 *(f"{name} {sign} {limit:g}" for name, sign, limit in self.constraints)]
+        words = [*(f"{way} {name}" for name, way in self.objectives.items()), *map(str, self.constraints)]
         return f"Problem: limit {self.traverse_limit_km} km, seed {self.seed}", pd.DataFrame({"asked": words})
 
 

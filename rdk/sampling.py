@@ -5,13 +5,14 @@ Each study is one call of `evaluate` on a population built for it.
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from ._fields import Shown, check, generator, in_rows, limits_of, require, unknown, whole
-from .design import DESIGN_SPACE, Design, Model, Scenario, single
+from .design import DESIGN_SPACE, Demand, Design, Model, Scenario, single
 from .mission import Performance, evaluate
 from .terramechanics import Soil
 from .uncertainty import DRAWS, uncertain_inputs
@@ -21,33 +22,24 @@ METRICS = tuple(f.name for f in dataclasses.fields(Performance) if f.name not in
 READINGS = ("range_km", "total_mass_kg", "slope_capability_deg", "slip", "energy_balance_pct")   # of a short table
 
 
-def demands(wanted, argument: str = "constraints", may_contradict: bool = False) -> tuple:
-    """Demands like ("range_km", ">=", 30), checked: fields of Performance, limits that do not contradict each other."""
-    if not isinstance(wanted, (list, tuple)) or not all(isinstance(c, (list, tuple)) for c in wanted):
-        raise ValueError(f"{argument} must be a list of (field, '>=' or '<=', limit); got {wanted!r}")
-    limits, found = {}, []
-    for demand in wanted:
-        if len(demand) != 3 or demand[1] not in (">=", "<="):
-            raise ValueError(f"{argument} must be like ('range_km', '>=', 0.1); got {demand!r}")
-        name, sign, limit = demand
+def demands(wanted, argument: str = "constraints", scenario: Scenario | None = None,
+            may_contradict: bool = False) -> tuple[Demand, ...]:
+    """Demands from triples like ("range_km", ">=", 30), checked; an obstacle that the scenario has is one more."""
+    found = Demand.all(wanted, argument)
+    for name, *_ in found:
         if name not in METRICS:
             raise unknown(f"{argument}: no Performance field", name, METRICS)
-        both = limits.setdefault(name, {">=": -math.inf, "<=": math.inf})
-        flag = isinstance(limit, (bool, np.bool_))
-        limit = check(f"{argument}: limit of {name}", float(limit) if flag else limit, scalar=True)
-        found.append((name, sign, limit))
-        both[sign] = max(both[sign], limit) if sign == ">=" else min(both[sign], limit)
-    for name, both in limits.items():
-        if both[">="] > both["<="] and not may_contradict:
-            raise ValueError(f"{argument} contradict each other: {name} >= {both['>=']:g} and <= {both['<=']:g}")
-    return tuple(found)
+    for least, most in itertools.product([] if may_contradict else found, repeat=2):
+        if (least.field, least.sign, most.sign) == (most.field, ">=", "<=") and least.limit > most.limit:
+            raise ValueError(f"{argument} contradict each other: {least} and <= {most.limit:g}")
+    if scenario is not None and scenario.required_obstacle_height_m > 0:
+        found += (Demand("obstacle_capability_m", ">=", scenario.required_obstacle_height_m),)
+    return found
 
 
 def holds(performance: Performance, demand: tuple) -> bool | np.ndarray:
     """Whether a demand such as ("range_km", ">=", 30) holds; not where the field is NaN."""
-    name, sign, limit = demand
-    value = np.asarray(getattr(performance, name), float)
-    return value >= limit if sign == ">=" else value <= limit
+    return Demand(*demand).slack(performance) >= 0
 
 
 # ---- designs and genes ----------------------------------------------------------------------------------------

@@ -14,12 +14,10 @@ import numpy as np
 
 from ._evolution import ELITE, evolve
 from ._fields import Shown, check, unknown, whole
-from .design import DESIGN_SPACE, Design, Model, Scenario, single
+from .design import DESIGN_SPACE, Demand, Design, Model, Scenario, single
 from .mission import Performance, evaluate
 from .sampling import METRICS, decode, demands as checked, encode, light_corner, random_designs, replaced
 from .uncertainty import uncertain_inputs
-
-__all__ = ["Demand", "Progress", "Sizing", "prudent_demands", "size"]
 
 POPULATION, GENERATIONS = 40, 130                        # designs of each wheel count
 # with confidence: draws, designs, generations, margin (a share of 1 - confidence), lanes after which to go on
@@ -35,30 +33,6 @@ PRICE_STEP = 0.05                                        # share of its limit by
 WORST = 1e3                                              # shortfall of a demand, in units of its limit, at most
 VARIABLES = list(DESIGN_SPACE)
 WHEELS = VARIABLES.index("wheel_count")                  # the gene that no trial changes
-
-
-class _Triple(NamedTuple):
-    field: str
-    sign: str
-    limit: float
-
-
-class Demand(_Triple):
-    """A Performance field, ">=" or "<=", and its limit; `why` says what it is good for."""
-
-    def __new__(cls, field: str, sign: str, limit: float, why: str = ""):
-        demand = super().__new__(cls, field, sign, limit)
-        demand.why = why
-        return demand
-
-    def __str__(self):
-        return f"{self.field} {self.sign} {self.limit:g}"
-
-    def slack(self, performance):
-        """How far a performance is inside the limit, in the field's unit; below 0 where the demand fails."""
-        value = np.asarray(getattr(performance, self.field), float)
-        slack = value - self.limit if self.sign == ">=" else self.limit - value
-        return np.where(np.isnan(slack), -np.inf, slack)
 
 
 class Progress(NamedTuple):
@@ -346,10 +320,7 @@ def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confid
     if confidence is not None:
         confidence = check("confidence", confidence, above=0, below=1, scalar=True)
     seed = whole("seed", seed)
-    asked = tuple(Demand(*one, getattr(given, "why", "")) for given, one in zip(
-        demands, checked(demands, "demands", may_contradict=True)))
-    if scenario.required_obstacle_height_m > 0:
-        asked += (Demand("obstacle_capability_m", ">=", scenario.required_obstacle_height_m),)
+    asked = checked(demands, "demands", scenario, may_contradict=True)
     search = _Search(scenario, asked, minimise, confidence, model, bounds, seed)
     for done, (genes, objective, violation) in enumerate(search.stages(), 1):
         near = violation <= violation.min() + (NEARLY if confidence and violation.min() > 0 else 0)

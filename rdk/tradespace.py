@@ -147,9 +147,7 @@ def posed(scenario: Scenario, objectives=None, constraints=None, seed=None) -> t
     """The scenario and the Problem that a search uses: the scenario's own problem, with what the caller changes."""
     single(scenario=scenario)
     problem = scenario.problem
-    constraints = demands(problem.constraints if constraints is None else constraints)
-    if scenario.required_obstacle_height_m > 0:
-        constraints += (("obstacle_capability_m", ">=", scenario.required_obstacle_height_m),)
+    constraints = demands(problem.constraints if constraints is None else constraints, scenario=scenario)
     problem = Problem(problem.objectives if objectives is None else objectives, constraints, problem.traverse_limit_km,
                       problem.seed if seed is None else seed)
     if not problem.objectives:
@@ -244,7 +242,7 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
     if not len(front):
         message = f"no design of {len(history)} generations has a solution: the wheels are buried"
         if math.isfinite(mission.least):
-            words = ", ".join(f"{name} {sign} {limit:g}" for name, sign, limit in problem.constraints)
+            words = ", ".join(map(str, problem.constraints))
             message = f"no design of {len(history)} generations met the constraints {words}; {mission.nearest_miss}"
         front = dataclasses.replace(front, message=message)
         if warn:
@@ -321,8 +319,7 @@ def nsga2(scenario: Scenario, problem: Problem, population: int = 50, generation
             # designs that differ in a variable which no objective feels tie in theory; the last bits, which differ
             # from one processor to the next, must not rank them
             F = np.round(minimised(result, problem.objectives), RANKED_DECIMALS)
-            G = np.stack([(getattr(result, name) - limit) * (-1 if sign == ">=" else 1)
-                          for name, sign, limit in problem.constraints] + [np.zeros(len(x))], axis=1)
+            G = np.stack([*(-demand.slack(result) for demand in problem.constraints), np.zeros(len(x))], axis=1)
             failed = result.buried | ~np.isfinite(F).all(1) | ~np.isfinite(G).all(1)
             F[failed], G[failed] = FAILED, FAILED
             out["F"], out["G"] = F, G
