@@ -1,11 +1,14 @@
-"""What a rover meets on its site: the pressure of its wheels at rest, rocks in its way, the longest dark."""
+"""What a rover meets on its site: the pressure of its wheels at rest, rocks, the longest dark, a way along a ridge."""
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import exp1
 
+from rdk import catalog
 from rdk._fields import Real, check
+from rdk.route import Way
+from rdk.sky import Skyline
 from rdk.terramechanics import Soil, Wheel, wheel_forces
 
 
@@ -48,3 +51,11 @@ def longest_run(flags: ArrayLike, step: float = 1.0) -> float:
         raise ValueError(f"flags must have one dimension; got {np.ndim(flags)}")
     edges = np.flatnonzero(np.diff(np.r_[0, np.asarray(flags, bool).astype(np.int8), 0]))
     return (edges[1::2] - edges[::2]).max(initial=0) * step
+
+
+def ridge() -> Way:
+    """The tabulated Way along Connecting Ridge, 1.9 km near the south pole, with its skylines 1 m above ground."""
+    way, seen = catalog.table("ridge_route.csv"), catalog.table("ridge_route_skylines.csv").set_index("azimuth_deg")
+    slope = np.degrees(np.arctan2(np.diff(way.height_m), np.diff(way.distance_m)))
+    return Way(way.distance_m, slope, way.latitude_deg, way.longitude_deg, [float(name[3:-1]) for name in seen],
+               [Skyline(seen.index, seen[name]) for name in seen])

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import catalog, mission, power, sky
+from . import mission, power, sky
 from ._fields import Real, brief, check, listed, require
 from .design import Design, Model, Scenario
 from .sampling import single
@@ -74,8 +74,7 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
     `detour`, length driven over length gained, is at least 1: one number, or one a cell.
     """
     require(terrain=(terrain, Terrain))
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import dijkstra
+    from scipy.sparse import csgraph, csr_array
     height, (rows, columns) = terrain.height_m, terrain.height_m.shape
     if not callable(joule_per_m):
         raise TypeError(f"joule_per_m must be a function, such as rdk.route.cost(rover, mission); got {joule_per_m!r}")
@@ -103,7 +102,7 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
     real = np.isfinite(joule)
     graph = csr_array((joule[real], (source[real], target[real])), shape=(index.size, index.size))
     first, last = index[tuple(start)].item(), index[tuple(goal)].item()
-    energy, before = dijkstra(graph, indices=first, return_predecessors=True)
+    energy, before = csgraph.dijkstra(graph, indices=first, return_predecessors=True)
     reach = energy.reshape(rows, columns)
     if not np.isfinite(energy[last]):
         steep = [f"the {name} ({row}, {column}) tilts {tilt[row, column]:.1f} deg"
@@ -164,14 +163,6 @@ def along(terrain: Terrain, cells: np.ndarray, *, skyline_every_m: float | None 
         0, distance[-1], check("skyline_every_m", skyline_every_m, above=0, scalar=True))), len(distance) - 1])
     return Way(distance, np.degrees(np.arctan2(rise, run)), *terrain.to_latlon(x, y), tuple(distance[i] for i in stops),
                tuple(terrain.skyline(x[i], y[i], height_m, beyond=beyond) for i in stops))
-
-
-def ridge() -> Way:
-    """The tabulated Way along Connecting Ridge, 1.9 km near the south pole, with its skylines 1 m above ground."""
-    way, seen = catalog.table("ridge_route.csv"), catalog.table("ridge_route_skylines.csv").set_index("azimuth_deg")
-    slope = np.degrees(np.arctan2(np.diff(way.height_m), np.diff(way.distance_m)))
-    return Way(way.distance_m, slope, way.latitude_deg, way.longitude_deg, [float(name[3:-1]) for name in seen],
-               [sky.Skyline(seen.index, seen[name]) for name in seen])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -258,8 +249,7 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
         share = np.clip((distance - seen_m[k]) / np.diff(seen_m)[k], 0, 1)
         solar = panel * ((1 - share) * light[k, step, lane] + share * light[k + 1, step, lane])
         resting = np.where(resting, stored < go_soc * capacity, stored <= rest_soc * capacity)
-        arrived, halted = distance >= goal, (distance >= end) & (end < goal)
-        mode = np.select([lost, arrived, halted, resting & (solar > avionics), resting, work_h > 0],
+        mode = np.select([lost, distance >= goal, distance >= end, resting & (solar > avionics), resting, work_h > 0],
                          [EMPTY, ARRIVED, STALLED, CHARGE, SLEEP, SCIENCE], DRIVE)
         ahead = along_lane(along_lane(distance, points, clock) + 3600 * step_h, clock, points)
         ahead = np.where(mode == DRIVE, np.minimum(np.minimum(ahead, end), stop), distance)
@@ -277,27 +267,26 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
         log.append((distance, stored, solar, load, mode))
         if np.all(lost | (distance >= goal) | (mode == STALLED)):
             break
-    distances, stored, solar, load, modes = (np.array(values) for values in zip(*log))
-    time, arrived = time[:len(log)], distance >= goal
-    ended_h = time[np.argmax(distances >= end, axis=0)]
-    arrival = np.where(arrived, ended_h, np.inf)
-    messages = [_sentence(way, time, *of_lane) for of_lane in zip(
-        distance, arrival, lost, end, ended_h, (solar > 0).T, (modes != EMPTY).T)]
+    distances, stored, solar, load, modes = log = [np.array(values) for values in zip(*log)]
+    time, arrived = time[:len(modes)], distance >= goal
+    arrival = np.where(arrived, time[np.argmax(distances >= end, axis=0)], np.inf)
+    messages = [_sentence(way, time, *of_lane) for of_lane in zip(distances.T, solar.T, modes.T, end, lost)]
     pick = ... if lanes else (..., 0)                    # a single one comes without its column
-    return March(time, *(values[pick] for values in (distances, stored, solar, load, modes)), arrival[pick][()],
+    return March(time, *(values[pick] for values in log), arrival[pick][()],
                  np.where(arrived, np.inf, distance)[pick][()], messages if lanes else messages[0])
 
 
-def _sentence(way, time, distance, arrival_h, lost, end_m, ended_h, sunny, alive):
+def _sentence(way, time, distance, solar, mode, end_m, lost):
     """Where one lane of a march ended, and why."""
-    if np.isfinite(arrival_h):
-        return f"arrives after {arrival_h:.1f} h"
-    until = f"stranded at {distance:.0f} m after "
+    goal, ended = way.distance_m[-1], time[distance >= end_m]
+    if distance[-1] >= goal:
+        return f"arrives after {ended[0]:.1f} h"
+    until = f"stranded at {distance[-1]:.0f} m after "
     if lost:
-        last = time[alive][-1]
-        dark = last - max(time[alive & sunny], default=0.0)
-        return f"{until}{last:.1f} h: pack empty, {dark:.1f} h after the last sun"
-    if distance >= end_m:
+        alive = mode != EMPTY
+        last, sunny = time[alive][-1], time[alive & (solar > 0)]
+        return f"{until}{last:.1f} h: pack empty, {last - max(sunny, default=0.0):.1f} h after the last sun"
+    if len(ended):
         slope = way.slope_deg[np.searchsorted(way.distance_m, end_m, "right") - 1]
-        return f"{until}{ended_h:.1f} h: the wheels do not hold the slope of {slope:.1f} deg ahead"
-    return f"still at {distance:.0f} m of {way.distance_m[-1]:.0f} m after {time[-1]:.1f} h"
+        return f"{until}{ended[0]:.1f} h: the wheels do not hold the slope of {slope:.1f} deg ahead"
+    return f"still at {distance[-1]:.0f} m of {goal:.0f} m after {time[-1]:.1f} h"

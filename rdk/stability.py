@@ -53,7 +53,6 @@ def axle_loads(mass_kg: Real, wheelbase_m: Real, centre_height_m: Real, slope_de
     The slope lies between -90 and 90 deg; where it is positive, the front is uphill. The centre of mass is zero or more
     above the ground and `centre_offset_m` ahead of the middle; the bogie's pivot is midway between its wheels and by
     default on the ground: there it always shares evenly.
-
     The loads add up to the weight's component normal to the slope. A negative one belongs to a pair that has lifted:
     the rover then stands otherwise than assumed here.
 

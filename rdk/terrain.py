@@ -150,8 +150,6 @@ class Terrain:
                        f"{self.name or 'terrain'} at {x:.0f}, {y:.0f} m, {height_m:g} m")
 
 
-# ---- files -----------------------------------------------------------------------------------------------------
-
 def read(path: str | Path, **geometry: float) -> Terrain:
     """A height map from a file, with its place on the Moon.
 
@@ -272,8 +270,6 @@ def _geotiff(path):
     return Terrain(height, step, west, north, latitude, longitude,
                    entry("GeogSemiMajorAxisGeoKey", default=np.nan), path.stem)
 
-
-# ---- made-up ground --------------------------------------------------------------------------------------------
 
 def synthetic(seed: int, *, like: str = "connecting_ridge_10m", cells: int = 256, step_m: float | None = None,
               latitude_deg: float = -85.0, longitude_deg: float = 0.0) -> Terrain:

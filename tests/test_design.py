@@ -14,6 +14,7 @@ import pytest
 
 import rdk
 import searches
+from on_site import ridge
 from rdk.design import DESIGN_SPACE, Problem
 from rdk.terramechanics import Soil, Wheel
 
@@ -407,7 +408,7 @@ def test_a_problem_is_a_value_and_a_mission_takes_nothing_else():
 def test_results_of_long_arrays_show_their_ends():
     load = np.linspace(5.0, 50.0, 200)
     for result in (rdk.terramechanics.wheel_forces(DESIGN.wheel, SOIL, load, 0.1),
-                   rdk.terramechanics.slip_balance(DESIGN.wheel, SOIL, load, 1.0), rdk.route.ridge(),
+                   rdk.terramechanics.slip_balance(DESIGN.wheel, SOIL, load, 1.0), ridge(),
                    rdk.stability.axle_loads(load, 0.5, 0.2, 5.0, wheel_count=4)):
         text = repr(result)
         assert text.startswith(type(result).__name__ + "(") and len(text) < 1200 and "..." in text
@@ -459,7 +460,7 @@ def test_the_kernel_brings_its_own_transition():
     (lambda: rdk.terramechanics.grouser_lift("Rashid-1"), r"wheel .*\.wheel"),
     (lambda: rdk.route.per_metre("Rashid-1", SCENARIO, 3), r"design .*rdk.rover"),
     (lambda: rdk.route.cost(DESIGN, "mare"), r"scenario .*rdk.scenario"),
-    (lambda: rdk.route.march(rdk.route.ridge(), "Rashid-1", SCENARIO), r"design .*rdk.rover"),
+    (lambda: rdk.route.march(ridge(), "Rashid-1", SCENARIO), r"design .*rdk.rover"),
     (lambda: rdk.sampling.uncertain_inputs("mare"), r"scenario .*rdk.scenario"),
     (lambda: rdk.catalog.to_csv(DESIGN, "fast"), "performance must be a Record; got 'fast'"),
     (lambda: rdk.catalog.at_latitude("mare", 5.0), r"scenario .*rdk.scenario")], ids=range(19))

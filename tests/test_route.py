@@ -234,7 +234,7 @@ def test_routes_on_the_real_ridge():
 def test_the_tabulated_way_is_the_real_ridges():
     ridge, *wide = (terrain.read(SHARED / f"{name}.png") for name in ("connecting_ridge_10m", "connecting_ridge_20m",
                                                                       "south_pole_240m", "south_pole_480m"))
-    way = route.ridge()
+    way = on_site.ridge()
     for at, seen in list(zip(way.skyline_m, way.skylines))[::6]:
         point = np.argmin(abs(way.distance_m - at))
         x, y = ridge.to_xy(way.latitude_deg[point], way.longitude_deg[point])
@@ -280,7 +280,7 @@ def test_a_march_in_the_sun_by_hand():
 @pytest.mark.parametrize("start", ["2026-06-01", "2026-10-05", "2026-12-01"])
 def test_energy_is_accounted_for(start):
     design = replace(ROVER, battery_capacity_wh=200.0)
-    march = route.march(route.ridge(), design, replace(SUNNY, start_utc=start))
+    march = route.march(on_site.ridge(), design, replace(SUNNY, start_utc=start))
     solar, load, taken = books(march, design)
     full, empty = march.stored_wh >= 200 - 1e-9, march.stored_wh <= 30 + 1e-9
     between = ~full & ~empty
@@ -330,9 +330,9 @@ def test_lanes_march_as_they_do_alone():
     designs = rdk.random_designs(5, seed=4)
     delays = np.arange(5) * 300.0
     scenario = replace(SUNNY, duration_earth_days=4)
-    many = route.march(route.ridge(), designs, scenario, delay_h=delays)
+    many = route.march(on_site.ridge(), designs, scenario, delay_h=delays)
     for i in range(5):
-        one = route.march(route.ridge(), designs[i], scenario, delay_h=delays[i])
+        one = route.march(on_site.ridge(), designs[i], scenario, delay_h=delays[i])
         assert one.message == many.message[i] and one.arrival_h == many.arrival_h[i]
         shared = min(len(one.time_h), len(many.time_h))
         np.testing.assert_allclose(many.distance_m[:shared, i], one.distance_m[:shared], rtol=1e-9)
@@ -341,13 +341,13 @@ def test_lanes_march_as_they_do_alone():
 
 
 def test_the_step_of_time_does_not_decide():
-    coarse, fine = (route.march(route.ridge(), ROVER, SUNNY, follow_sun=True, step_h=step) for step in (0.25, 0.05))
+    coarse, fine = (route.march(on_site.ridge(), ROVER, SUNNY, follow_sun=True, step_h=step) for step in (0.25, 0.05))
     np.testing.assert_allclose(coarse.arrival_h, fine.arrival_h, atol=0.25)
     np.testing.assert_allclose(coarse.stored_wh[-1], fine.stored_wh[-1], atol=4.0)       # a quarter of an hour at 16 W
 
 
 def test_summer_and_winter_on_the_ridge():
-    summer, winter = (route.march(route.ridge(), ROVER, replace(SUNNY, start_utc=start), follow_sun=True)
+    summer, winter = (route.march(on_site.ridge(), ROVER, replace(SUNNY, start_utc=start), follow_sun=True)
                       for start in ("2026-12-01", "2026-06-01"))
     assert np.isfinite(summer.arrival_h) and winter.stranded_m < 1000 and "pack empty" in winter.message
 

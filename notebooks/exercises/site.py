@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from rdk import catalog, power, route, sky
 from rdk.mission import evaluate
 
-from on_site import detour_factor
+from on_site import detour_factor, ridge
 
 from .judging import Exercise
 
@@ -116,7 +116,7 @@ def _rock_cover_pct(obstacle_m=0.05, longer=1.1):
 @cache
 def _least_battery_wh():
     packs = np.arange(300.0, 501.0, 10.0)
-    march = route.march(route.ridge(), catalog.rover("MoonRanger").replace(battery_capacity_wh=packs),
+    march = route.march(ridge(), catalog.rover("MoonRanger").replace(battery_capacity_wh=packs),
                         _slow().replace(start_utc="2026-03-15", duration_earth_days=30), follow_sun=True)
     lost = np.flatnonzero(np.isinf(march.arrival_h))
     return packs[lost[-1] + 1], packs[lost[-1]]
