@@ -193,11 +193,11 @@ def entry_angle(patch, s, target, with_pull=0.0, rule=DRIVING):
     return result
 
 
-def settled(theta, s, patch):
-    """Load, pull and torque, each lane by the rule for its slip: what is handed out once angle and slip are found."""
-    found, brakes = forces(theta, s, patch), np.flatnonzero(s < 0)
+def braked(found, slip, function, *lanes):
+    """What a function of lanes found by the rule for driving, the lanes that brake found anew by that for braking."""
+    brakes = np.flatnonzero(slip < 0)
     if brakes.size:
-        for whole, part in zip(found, forces(theta[brakes], s[brakes], patch.take(brakes), BRAKING)):
+        for whole, part in zip(found, function(*(a.take(brakes) for a in lanes), BRAKING)):
             whole[brakes] = part
     return found
 
@@ -209,7 +209,8 @@ def carried(patch, s, load):
         if lane.any():
             lane = np.flatnonzero(lane)
             theta[lane] = entry_angle(patch.take(lane), s[lane], load[lane], rule=rule)[0]
-    return *settled(theta, s, patch)[1:], patch.r * (1 - np.cos(theta)), theta, np.where(np.isnan(theta), np.nan, 1.0)
+    _, pull, torque = braked(forces(theta, s, patch), s, forces, theta, s, patch)
+    return pull, torque, patch.r * (1 - np.cos(theta)), theta, np.where(np.isnan(theta), np.nan, 1.0)
 
 
 # ---- slope capability -----------------------------------------------------------------------------------------
@@ -264,13 +265,8 @@ def _brakes(patch, load, low):
 
 
 def _slip_balance(patch, *lanes):
-    """Slip balance by the rule for driving; lanes that turn out to brake are balanced again by the rule for braking."""
     found = _balanced(patch, *lanes, DRIVING)
-    brakes = np.flatnonzero(found[0] < 0)
-    if brakes.size:
-        for whole, part in zip(found, _balanced(*(a.take(brakes) for a in (patch, *lanes)), BRAKING)):
-            whole[brakes] = part
-    return found
+    return braked(found, found[0], _balanced, patch, *lanes)
 
 
 def _balanced(patch, load, required, low, high, theta_high, pull_high, guess, rule):

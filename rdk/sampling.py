@@ -154,9 +154,6 @@ def sweep(design: Design, scenario: Scenario, over: dict, *, model: Model = Mode
     single(design=design, scenario=scenario, model=model)
     if not isinstance(over, dict) or not 1 <= len(over) <= 2:
         raise ValueError(f"over must be a dictionary of one or two fields with their values; got {over!r}")
-    if "duration_earth_days" in over:
-        raise ValueError("over: duration_earth_days sets the number of time steps and cannot be an array; evaluate "
-                         "one scenario a duration")
     for name, v in over.items():
         if any(name in limits_of(kind) for kind in (Design, Scenario, Soil, Model)):
             check(f"over: {name}", v, infinite=True)     # what is masked or no number, before it becomes an array

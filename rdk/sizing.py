@@ -107,9 +107,10 @@ class _Search:
             margins[:, start:start + step] = np.where(found.buried, -np.inf, self.slacks(found))
         return np.where(self.flags[:, None, None] & (margins >= 0), np.inf, margins)
 
-    def draws(self, count, seed):
-        """The uncertain inputs, one value a draw: the same for all designs."""
-        return uncertain_inputs(self.scenario, draws=count, seed=seed, model=self.model)
+    def held(self, genes):
+        """Whether each demand holds in each fresh draw of the inputs: (demands, draws, designs)."""
+        seed = self.seed + FRESH_SEED
+        return self.margins(genes, uncertain_inputs(self.scenario, draws=FRESH_DRAWS, seed=seed, model=self.model)) >= 0
 
     def stages(self, known=None):
         """Yield (genes, objective, violation), each by population, after every generation."""
@@ -138,7 +139,8 @@ class _Search:
         draws, designs, generations, margin, budget = STAGES[name]
         confidence = self.confidence + margin * (1 - self.confidence)
         allowed = min(math.floor((1 - confidence) * draws + 1e-9), draws - 1)        # draws that may fail
-        genes, changes, lanes = genes[:, :designs], self.draws(draws, self.seed), 0
+        genes, lanes = genes[:, :designs], 0
+        changes = uncertain_inputs(self.scenario, draws=draws, seed=self.seed, model=self.model)
         # a look at the hardest draws comes first
         hardest = np.argsort(self.margins(genes[0, :ELITE], changes).min((0, 2), initial=np.inf), kind="stable")
         look = max(draws // FIRST_LOOK, allowed + 1)
@@ -206,9 +208,7 @@ class Sizing(Shown):
     @cached_property
     def _holds(self):
         """Whether each demand (down) holds in each fresh draw (across)."""
-        search = self.search
-        changes = search.draws(FRESH_DRAWS, search.seed + FRESH_SEED)
-        return search.margins(encode(self.design, search.bounds), changes)[..., 0] >= 0
+        return self.search.held(encode(self.design, self.search.bounds))[..., 0]
 
     @property
     def odds(self) -> float:
@@ -344,8 +344,7 @@ def _conflict(found):
     if not missed:
         frame = found.demands
         weakest = frame.loc[frame["share"].idxmin()]
-        best = search.margins(found.population[:1], search.draws(FRESH_DRAWS, search.seed + FRESH_SEED))
-        best = max(found.odds, (best >= 0).all(0).mean())
+        best = max(found.odds, search.held(found.population[:1]).all(0).mean())
         return (f"a confidence of {search.confidence:g} is not reachable: the search found no design with a joint "
                 f"share above {best:.3f}. The nearest miss, the lightest within {NEARLY} of it, fails most often: "
                 f"{weakest['demand']}, which holds in {weakest['share']:.3f} of the draws")

@@ -9,9 +9,8 @@ multi-pass. Checked against soft-soil tests only; on firm soil it sinks too far.
 cohesion (10 kPa) and small K (below 3 mm) the integrals are good to 0.4 % of the load, and more than one entry angle
 may carry it: do not trust the pull there.
 
-How it is solved. Gauss-Legendre nodes on each contact arc move smoothly with entry angle and slip, so the exact
-derivatives of the forces come with the forces. Entry angle, slip and slope capability are Newton iterations over all
-lanes at once, with a bracket to fall back on; a lane leaves the batch as soon as it has converged.
+How it is solved. Entry angle, slip and slope capability are Newton iterations over all lanes at once, on the exact
+derivatives of the forces, with a bracket to fall back on.
 
 Arrays broadcast; a float comes back where every input is one.
 """
@@ -145,10 +144,6 @@ def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: Arr
     forces follow from the stress integrals over the contact arc. NaN where no angle in (0, 90 deg) carries the load,
     which is positive. The slip s = 1 - v / (omega r), eq. slip, is -1 to 1 and negative when braking; the options are
     those of `KernelOptions`.
-
-    References
-    ----------
-    Wong & Reece (1967), doi:10.1016/0022-4898(67)90105-X; Janosi & Hanamoto (1961).
 
     Examples
     --------

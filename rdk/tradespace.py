@@ -71,12 +71,9 @@ class Front(Shown):
         """The front in a file of `save`, its performance evaluated anew; ValueError where the file is damaged."""
         try:
             kept = catalog.read_json(Path(path).read_text(encoding="utf-8"))
-            empty = not any(kept["design"][name] for name in DESIGN_SPACE)
-            some = {"design": {name: v.high for name, v in DESIGN_SPACE.items()}} if empty else {}
-            designs, scenario = catalog.from_json(json.dumps(kept | some))
-            if empty:
-                designs = Design(**{name: np.empty(0) for name in DESIGN_SPACE})
-            model, problem = catalog.built(Model, kept["model"]), catalog.built(Problem, kept["problem"])
+            designs, scenario, model, problem = (
+                catalog.built(kind, kept[kind.__name__.lower()]) for kind in (Design, Scenario, Model, Problem))
+            single(scenario=scenario, model=model)
             history = tuple(np.array(F, float).reshape(len(F), len(problem.objectives))
                             for F in kept["objective_history"])
             return cls(designs, evaluate(designs, scenario, model=model), scenario, model, problem, history,
@@ -272,24 +269,23 @@ def _first_generation(start, bounds):
     """pymoo's sampling: uniform; half in the light corner; or known designs filled up with uniform ones."""
     from pymoo.operators.sampling.rnd import FloatRandomSampling
     designs = getattr(start, "designs", start)
-    if designs is None or (isinstance(designs, Design) and designs.shape == (0,)):
+    if designs is None:
         return FloatRandomSampling()
     if not isinstance(designs, Design) and not (isinstance(start, str) and start == "light"):
         raise TypeError(f"start must be 'light', a Front or a Design; got {start!r}")
 
-    class Start(FloatRandomSampling):
-        def _do(self, mission, n_samples, *args, **kwargs):
-            genes = super()._do(mission, n_samples, *args, **kwargs)
-            if isinstance(start, str):
-                light_corner(genes[:n_samples // 2])     # a view
-            else:
-                known = encode(designs, bounds)
-                if len(known) > n_samples:
-                    known = known[np.linspace(0, len(known) - 1, n_samples).round().astype(int)]
-                genes[:len(known)] = known
-            return genes
+    def sampling(mission, count, **kwargs):
+        found = FloatRandomSampling()(mission, count, **kwargs)
+        genes = found.get("X")
+        if isinstance(start, str):
+            light_corner(genes[:count // 2])             # a view
+        else:
+            known = encode(designs, bounds)
+            taken = np.linspace(0, len(known) - 1, min(len(known), count)).round().astype(int)
+            genes[:len(taken)] = known[taken]
+        return found.new("X", genes)
 
-    return Start()
+    return sampling
 
 
 def nsga2(scenario: Scenario, problem: Problem, population: int = 50, generations: int = 60, *, model: Model = Model(),

@@ -40,16 +40,8 @@ def uncertain_names(table: list | None = None) -> list[str]:
 def inputs_at(points: np.ndarray, scenario: Scenario, *, model: Model = Model(), table: list | None = None) -> dict:
     """Uncertain inputs at points of the unit cube, each coordinate taken through the distribution of one input.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, k)
-        One column for each of `uncertain_names(table)`.
-    table : list of dict, optional
-        Rows with `name`; `kind`, "factor" (times the nominal value), "offset" (added to it) or "value" (in its place);
-        `distribution`, "normal" or "lognormal" with `low` and `high` its 5 % and 95 % points, or "uniform" between
-        them; `minimum` and `maximum`, where a tail is cut to stay physical. Rows of one name are a mixture with the
-        shares `weight`; a row counts only `when` its condition holds, "from=35" or "below=35" of the nominal value, or
-        "kernel=paper" of the model.
+    The points have shape (n, k), one column for each of `uncertain_names(table)`. A table has rows like those of
+    `data/uncertainties.csv`: `data/README.md` says what each of its columns does.
     """
     single(scenario=scenario, model=model)
     nominal, changes, names = {**model.numbers(), **scenario.soil.numbers()}, {}, uncertain_names(table)
