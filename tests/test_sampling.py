@@ -217,7 +217,7 @@ def test_sweep_changes_nothing_but_what_is_swept():
     ({}, "one or two fields"), (["slope_deg"], "over must be a dictionary"),
     ({"slope_deg": [1], "duty_cycle": [0.1], "shear_scale": [1]}, "one or two fields"),
     ({"slope": [1, 2]}, "Design, Scenario, Soil and Model have no field 'slope'; nearest are slope_deg"),
-    ({"name": ["a", "b"]}, "no field 'name'"), ({"duration_earth_days": [7, 14]}, "duration_earth_days must be one number"),
+    ({"name": ["a", "b"]}, "no field 'name'"), ({"duration_earth_days": [7, 14]}, "duration_earth_days must be one"),
     ({"time_step_h": [0.5, 1]}, "time_step_h must be one number"), ({"slope_deg": 5.0}, "one-dimensional"),
     ({"slope_deg": [[1, 2], [3, 4]]}, "one-dimensional"), ({"slope_deg": []}, "one-dimensional"),
     ({"slope_deg": [0, 95]}, "slope_deg must be .*below 90.* at index 1"),

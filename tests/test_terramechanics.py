@@ -616,6 +616,11 @@ def test_without_normal_stress_the_wheel_is_buried():
     assert slip_balance(WHEEL, MARE, 8.0, 1.0, transition_c1=1.0, transition_c2=0.0).buried
 
 
+def settled(*lanes):
+    """Load, pull and torque at angles and slips, each lane by the rule for its slip."""
+    return contact.braked(contact.forces(*lanes), lanes[1], contact.forces, *lanes)
+
+
 def test_solvers_stand_extreme_soils_and_loads():
     """What a solver returns it must have solved, however absurd the wheel and its soil."""
     wheel, soil, load, rng = wild_lanes(5000, seed=7)
@@ -628,12 +633,12 @@ def test_solvers_stand_extreme_soils_and_loads():
         balance, capability = slip_balance(wheel, soil, load, pull), slope_capability(wheel, soil, load)
         low, high = (wheel_forces(wheel, soil, load, end).drawbar_pull_n for end in (-0.9, 0.95))
     solved = np.isfinite(found.entry_angle_rad)
-    carried = contact.settled(found.entry_angle_rad[solved], slip[solved], lanes.take(np.flatnonzero(solved)))[0]
+    carried = settled(found.entry_angle_rad[solved], slip[solved], lanes.take(np.flatnonzero(solved)))[0]
     np.testing.assert_allclose(carried, load[solved], rtol=1e-4)  # 2e-5 was the worst of 60,000
     assert 0.5 < solved.mean() < 1
     inner = ~balance.stalled & ((low <= pull) | (high <= pull))          # low is NaN where braking buries
-    carried, pulled, _ = contact.settled(balance.entry_angle_rad[inner], balance.slip[inner],
-                                         lanes.take(np.flatnonzero(inner)))
+    carried, pulled, _ = settled(balance.entry_angle_rad[inner], balance.slip[inner],
+                                     lanes.take(np.flatnonzero(inner)))
     np.testing.assert_allclose(carried, load[inner], rtol=1e-3)
     np.testing.assert_allclose(pulled / load[inner], pull[inner] / load[inner], atol=1e-3)
     assert inner.sum() > 500 and np.array_equal(np.isnan(balance.slip), balance.buried)
