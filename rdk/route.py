@@ -228,10 +228,10 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     time = np.arange(1, steps + 1) * step_h
     date = sky.julian_date(scenario.start_utc) + (time[:, None] - step_h / 2 + np.atleast_1d(delay_h)) / 24
     declination, noon = sky.subsolar_point(date)
+    places = way.latitude_deg, np.unwrap(way.longitude_deg, period=360)
     seen_m, light = np.r_[way.skyline_m if way.skylines else 0.0, np.inf], []
     for at, seen in zip(seen_m, way.skylines or [None]):
-        lat, lon = (np.interp(at, way.distance_m, values) for values in (
-            way.latitude_deg, np.unwrap(way.longitude_deg, period=360)))
+        lat, lon = (np.interp(at, way.distance_m, values) for values in places)
         elevation, azimuth = power.sun_position(lat, lon - noon, declination)
         light.append(power.incidence_factor(
             lat, lon - noon, scenario.panel_tilt_deg, azimuth if follow_sun else scenario.panel_azimuth_deg,

@@ -56,8 +56,8 @@ class Terrain:
     def __post_init__(self):
         height = floats("height_m", self.height_m).copy()
         if height.ndim != 2 or min(height.shape) < 2 or np.isinf(height).any() or np.isnan(height).all():
-            raise ValueError("height_m must be a grid of at least 2 x 2 cells with finite heights, NaN where there is "
-                             f"none, and not NaN alone; got shape {height.shape}")
+            raise ValueError("height_m must be a grid of at least 2 x 2 cells, finite or NaN and not NaN alone; got "
+                             f"shape {height.shape}")
         height.flags.writeable = False
         numbers = {name: check(name, getattr(self, name), **limits) for name, limits in limits_of(Terrain).items()}
         vars(self).update(numbers, height_m=height, _axes=_axes(self.latitude_deg, self.longitude_deg))
@@ -232,9 +232,8 @@ def _pds(path):
     if np.nanmedian(height) > radius / 2:                # the label counts from the Moon's centre
         height -= radius
     step = entry("MAP_SCALE")                            # offsets count samples from the middle of the first one
-    return Terrain(height, step, -(entry("SAMPLE_PROJECTION_OFFSET") + 0.5) * step,
-                   (entry("LINE_PROJECTION_OFFSET") + 0.5) * step, entry("CENTER_LATITUDE"),
-                   entry("CENTER_LONGITUDE"), radius, path.stem)
+    west, north = -(entry("SAMPLE_PROJECTION_OFFSET") + 0.5) * step, (entry("LINE_PROJECTION_OFFSET") + 0.5) * step
+    return Terrain(height, step, west, north, entry("CENTER_LATITUDE"), entry("CENTER_LONGITUDE"), radius, path.stem)
 
 
 def _geotiff(path):
