@@ -3,8 +3,6 @@
 Energy and time come from the wheel model at each slope, the way from SciPy's Dijkstra on the eight neighbours of each
 cell. Slopes shorter than a cell, turning, and braking that would charge the battery are left out.
 """
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -271,9 +269,8 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     time, arrived = time[:len(modes)], distance >= goal
     arrival = np.where(arrived, time[np.argmax(distances >= end, axis=0)], np.inf)
     messages = [_sentence(way, time, *of_lane) for of_lane in zip(distances.T, solar.T, modes.T, end, lost)]
-    pick = ... if lanes else (..., 0)                    # a single one comes without its column
-    return March(time, *(values[pick] for values in log), arrival[pick][()],
-                 np.where(arrived, np.inf, distance)[pick][()], messages if lanes else messages[0])
+    return March(time, *(values.reshape(-1, *lanes) for values in log), arrival.reshape(lanes)[()],
+                 np.where(arrived, np.inf, distance).reshape(lanes)[()], messages if lanes else messages[0])
 
 
 def _sentence(way, time, distance, solar, mode, end_m, lost):

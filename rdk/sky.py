@@ -3,8 +3,6 @@
 Closed forms of Meeus (1998), chapters 25 and 53, so no ephemeris is loaded. Julian dates are terrestrial time, east
 longitudes positive, azimuths clockwise from north.
 """
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
@@ -46,7 +44,7 @@ class Skyline:
         vars(self).update(azimuth_deg=azimuth, elevation_deg=elevation)
 
     @classmethod
-    def of(cls, value: Skyline | ArrayLike) -> Skyline:
+    def of(cls, value: "Skyline | ArrayLike") -> "Skyline":
         """A Skyline, from one or from elevations evenly spaced from north clockwise."""
         if isinstance(value, cls):
             return value

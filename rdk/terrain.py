@@ -3,8 +3,6 @@
 A map is a square grid on a stereographic plane that touches a sphere at its centre: the poles' own projection, and
 any small map's. Distances on the plane are taken as true; at 180 km from the centre they are 0.3 % too long.
 """
-from __future__ import annotations
-
 import csv
 import re
 from collections.abc import Sequence
@@ -56,8 +54,8 @@ class Terrain:
     def __post_init__(self):
         height = floats("height_m", self.height_m).copy()
         if height.ndim != 2 or min(height.shape) < 2 or np.isinf(height).any() or np.isnan(height).all():
-            raise ValueError("height_m must be a grid of at least 2 x 2 cells, finite or NaN and not NaN alone; got "
-                             f"shape {height.shape}")
+            raise ValueError("height_m must be a grid of at least 2 x 2 cells with finite heights, NaN where there is "
+                             f"none, and not NaN alone; got shape {height.shape}")
         height.flags.writeable = False
         numbers = {name: check(name, getattr(self, name), **limits) for name, limits in limits_of(Terrain).items()}
         vars(self).update(numbers, height_m=height, _axes=_axes(self.latitude_deg, self.longitude_deg))
@@ -114,7 +112,7 @@ class Terrain:
         """Steepest slope of each cell in degrees, over a baseline of two cells: shorter slopes are steeper."""
         return np.degrees(np.arctan(np.hypot(*np.gradient(self.height_m, self.step_m))))
 
-    def skyline(self, x: float, y: float, height_m: float = 2.0, *, beyond: Sequence[Terrain] = (),
+    def skyline(self, x: float, y: float, height_m: float = 2.0, *, beyond: Sequence["Terrain"] = (),
                 directions: int = 720, farthest_m: float = 180e3) -> Skyline:
         """Skyline of an eye above the ground at x, y, by great circles with the Moon's curvature exact.
 
