@@ -194,8 +194,7 @@ def _png(path, **given):
         if centre := re.search(r"centre ([\d.]+) ([NS]) (-?[\d.]+) E", row.get("projection", "")):
             north = float(centre[1])
             given |= dict(latitude_deg=north if centre[2] == "N" else -north, longitude_deg=float(centre[3]))
-    missing = [name for name in needed if name not in given]
-    if missing:
+    if missing := [name for name in needed if name not in given]:
         raise ValueError(f"{path.name}: a PNG does not say where it lies; give {', '.join(missing)}")
     with Image.open(path) as image:
         if not image.mode.startswith("I"):
