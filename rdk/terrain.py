@@ -104,7 +104,8 @@ class Terrain:
         inside = (row >= 0) & (row <= rows - 1) & (column >= 0) & (column <= columns - 1)
         i = np.clip(np.where(inside, row, 0), 0, rows - 2).astype(np.intp)       # outside, any cell: it becomes NaN
         k = np.clip(np.where(inside, column, 0), 0, columns - 2).astype(np.intp)
-        down, right, flat, first = row - i, column - k, self.height_m.ravel(), i * columns + k
+        down, right = row - i, column - k
+        flat, first = self.height_m.ravel(), i * columns + k
         top, bottom = (flat[n] * (1 - right) + flat[n + 1] * right for n in (first, first + columns))
         return np.where(inside, top * (1 - down) + bottom * down, np.nan)
 
@@ -135,7 +136,8 @@ class Terrain:
         ahead = np.outer(np.cos(np.radians(azimuth)), north) + np.outer(np.sin(np.radians(azimuth)), east)
         for terrain in (self, *listed("beyond", beyond, Terrain)):       # of each only the stretch that it can add to
             corners = terrain.place(*([0, n - 1] for n in terrain.height_m.shape))
-            reach = np.hypot(*abs(np.array(corners) - np.vstack(terrain.to_xy(lat, lon))).max(axis=1))
+            away = abs(np.array(corners) - np.vstack(terrain.to_xy(lat, lon)))
+            reach = np.hypot(*away.max(axis=1))
             k = np.flatnonzero(np.isnan(height).any(axis=0) & (s <= reach))
             rays = [np.outer(ahead @ axis, np.sin(arc[k])) + (up @ axis) * np.cos(arc[k]) for axis in terrain._axes]
             new = terrain.at(*terrain._from_axes(*rays))
@@ -229,7 +231,8 @@ def _pds(path):
     if np.nanmedian(height) > radius / 2:                # the label counts from the Moon's centre
         height -= radius
     step = entry("MAP_SCALE")                            # offsets count samples from the middle of the first one
-    west, north = -(entry("SAMPLE_PROJECTION_OFFSET") + 0.5) * step, (entry("LINE_PROJECTION_OFFSET") + 0.5) * step
+    west = -(entry("SAMPLE_PROJECTION_OFFSET") + 0.5) * step
+    north = (entry("LINE_PROJECTION_OFFSET") + 0.5) * step
     return Terrain(height, step, west, north, entry("CENTER_LATITUDE"), entry("CENTER_LONGITUDE"), radius, path.stem)
 
 
