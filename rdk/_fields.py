@@ -300,6 +300,8 @@ class Record(Shown):
         def plain(value):
             if isinstance(value, np.ndarray):            # + 0: minus zero equals zero
                 return value.shape, (value + 0).tobytes()
+            if isinstance(value, dict):
+                return tuple(value.items())
             return "nan" if isinstance(value, float) and value != value else value
 
         return tuple(plain(getattr(self, f.name)) for f in dataclasses.fields(self) if f.compare)

@@ -125,9 +125,6 @@ class Problem(Record):
         object.__setattr__(self, "constraints", Demand.all(self.constraints, "constraints", infinite=True))
         super().__post_init__()
 
-    def _key(self):
-        return tuple(self.objectives.items()), self.constraints, self.traverse_limit_km, self.seed
-
     def _summary(self):
         import pandas as pd
         words = [*(f"{way} {name}" for name, way in self.objectives.items()), *map(str, self.constraints)]

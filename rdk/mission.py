@@ -93,10 +93,9 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
             design.wheel, scenario.soil, model, weight_n=weight, slope_deg=scenario.slope_deg, slip_min=model.slip_min,
             slip_max=model.slip_max, capability_slip=model.slope_capability_slip,
             capability_limit_deg=model.slope_capability_limit_deg)
-        stance = partial(_stance, design, mass, model)
         torque = balance.torque_nm
         if np.any(model.axle_torque):
-            loaded = _axle_torque(design, scenario, model, mass, balance.slip, stance)
+            loaded = _axle_torque(design, scenario, model, mass, balance.slip)
             torque = np.where(model.axle_torque, loaded, torque)
         stalled = balance.stalled | (torque > design.peak_wheel_torque_nm)
         march = partial(traverse, design, scenario, model, balance.slip, balance.torque_nm, stalled, shape)
@@ -130,7 +129,7 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
     return Performance.trusted(shape, dict(
         {name: shaped(value, shape) for name, value in found.items()},
         log=log, mass=partial(_items, mass, shape), arrival_h=partial(_arrival_h, march, shape),
-        tip_over_deg=partial(_tip_over, design, stance, shape)))
+        tip_over_deg=partial(_tip_over, design, mass, model, shape)))
 
 
 def mass_of(design, scenario, model):
@@ -146,11 +145,11 @@ def _stance(design, mass, model):
                             envelope_density_kg_m3=model.envelope_density_kg_m3)
 
 
-def _axle_torque(design, scenario, model, mass, slip, stance):
+def _axle_torque(design, scenario, model, mass, slip):
     """Torque of the most loaded wheel at the slip that all wheels share; infinite where it is buried or airborne."""
     loads = stability.axle_loads(
-        mass.total_kg, design.wheelbase_m, stance().centre_height_m, scenario.slope_deg, wheel_count=design.wheel_count,
-        pivot_height_m=design.wheel_radius_m, gravity_m_s2=model.gravity_m_s2)
+        mass.total_kg, design.wheelbase_m, _stance(design, mass, model).centre_height_m, scenario.slope_deg,
+        wheel_count=design.wheel_count, pivot_height_m=design.wheel_radius_m, gravity_m_s2=model.gravity_m_s2)
     load = np.fmax(np.fmax(loads.front_n, loads.middle_n), loads.rear_n) / 2
     sound = np.isfinite(load) & (load > 0) & np.isfinite(slip)
     forces = terramechanics.wheel_forces(design.wheel, scenario.soil, np.where(sound, load, 1.0),
@@ -163,8 +162,8 @@ def _items(mass, shape):
     return MassBreakdown.trusted(shape, {name: shaped(value, shape) for name, value in mass.numbers().items()})
 
 
-def _tip_over(design, stance, shape):
-    stand = stance()
+def _tip_over(design, mass, model, shape):
+    stand = _stance(design, mass, model)
     tips = stability.tip_over(design.wheelbase_m, stand.track_m, stand.centre_height_m)
     return shaped(np.minimum(np.minimum(tips.uphill_deg, tips.downhill_deg), tips.sideways_deg), shape)
 

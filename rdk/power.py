@@ -32,13 +32,7 @@ def _sun_vector(latitude_deg, hour_angle, declination_deg):
 def sun_position(latitude_deg: Real, hour_angle: Real, declination_deg: Real = 0.0) -> tuple[Real, Real]:
     """Elevation above the smooth horizon and azimuth of the sun, clockwise from north, 0 to 360; all in degrees.
 
-    The hour angle is negative before noon.
-
-    Examples
-    --------
-    >>> elevation, azimuth = sun_position(20.0, 0.0)
-    >>> f"{elevation:.0f} deg high, {azimuth:.0f} deg"
-    '70 deg high, 180 deg'
+    The hour angle is negative before noon: at noon, 0, the sun stands 70 deg high in the south at latitude 20.
     """
     east, north, up, _ = _sun_vector(latitude_deg, hour_angle, declination_deg)
     return np.degrees(np.arcsin(np.clip(up, -1, 1))), np.degrees(np.arctan2(east, north)) % 360

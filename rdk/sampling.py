@@ -327,14 +327,6 @@ def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: 
     variable with one value in both designs has no effect and no share. Metrics that are not finite in all mixtures are
     left out; true/false ones count as 1 and 0. Fewer `metrics` take less time; mixtures that a `known` attribution
     has, of the same baseline, mission, model and metrics, are not evaluated again.
-
-    Examples
-    --------
-    >>> import rdk
-    >>> why = attribution(rdk.rover("Rashid-1"), rdk.rover("Tenacious"), rdk.scenario("equatorial_mare_traverse"))
-    >>> difference = why.performance.total_mass_kg - why.baseline_performance.total_mass_kg
-    >>> bool(np.isclose(why.contributions["total_mass_kg"].sum(), difference))
-    True
     """
     single(design=design, baseline=baseline, scenario=scenario, model=model)
     require(**{} if known is None else {"known": (known, Attribution)})

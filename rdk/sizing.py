@@ -187,17 +187,12 @@ class _Search:
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Sizing(Shown):
-    """The rover that `size` found.
+    """The rover that `size` found; where nothing meets the demands (or the confidence), the nearest miss.
 
-    Attributes
-    ----------
-    design : Design
-        Where nothing meets the demands (or the confidence), the nearest miss.
-    message : str
-        Empty, or which demands conflict, which confidence is out of reach, or that the search was stopped.
-    binding : tuple of str
-        Names of the demands met with no more than 0.5 % to spare (of a flag: that a step to a better objective turns),
-        and of the variables at a bound where a step inward, alone, worsens the objective or such a demand.
+    The `message` is empty or says which demands conflict, each of which could be met without one of the others, which
+    confidence is out of reach, or that the search was stopped. `binding` names the demands met with no more than 0.5 %
+    to spare (of a flag: that a step to a better objective turns), and the variables at a bound where a step inward,
+    alone, worsens the objective or such a demand.
     """
     design: Design
     performance: Performance
@@ -284,6 +279,8 @@ def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confid
          model: Model = Model(), bounds: dict | None = None, seed: int = 0, on_generation=None) -> Sizing:
     """The lightest rover that meets a list of demands on a mission; same seed, same rover.
 
+    Demands that nothing meets raise nothing: the `message` of the Sizing says so.
+
     Parameters
     ----------
     scenario : Scenario
@@ -295,16 +292,10 @@ def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confid
     confidence : float, optional
         Joint share of draws of the uncertain inputs in which all demands must hold, between 0 and 1; they hold at the
         nominal values too.
-    bounds : dict of str to (float, float), optional
-        Limits of some variables in place of those in DESIGN_SPACE.
+    bounds : dict, optional
+        As for `random_designs`.
     on_generation : callable, optional
         Called with a `Progress` after each generation; when it returns True the search stops there.
-
-    Returns
-    -------
-    Sizing
-        Demands that nothing meets raise nothing: `message` names those that conflict, each of which could be met
-        without one of the others, and `design` is the nearest miss.
 
     Examples
     --------

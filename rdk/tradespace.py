@@ -188,8 +188,8 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
         first generation, filled up with random ones; of more than `population`, that many from lightest to heaviest.
     on_generation : callable, optional
         Called with a `Progress` after each generation; when it returns True the search stops with the front so far.
-    bounds : dict of str to (float, float), optional
-        Limits of some variables in place of those in DESIGN_SPACE.
+    bounds : dict, optional
+        As for `sampling.random_designs`.
 
     References
     ----------
