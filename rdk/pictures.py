@@ -286,11 +286,11 @@ def wheel(result, design, scenario, model, size=SIZE):
     width, height = size
     narrow, half = width < 460, round(0.52 * height)     # then one above the other
     part, tall = (width, half) if narrow else (round(0.45 * width), height - 20)
-    stress = None if result.buried else contact(design, result, scenario, model, 65)
-    drawn = wheel_picture(design, result, scenario, model=model, width=part, height=tall, stress=stress)
+    drawn = wheel_picture(design, result, scenario, model=model, width=part, height=tall)
     if result.buried:
         return svg(width, height, drawn, alt(drawn))
-    angle, (normal, shear) = np.degrees(stress[1]), stress[2:]
+    angle, normal, shear = contact(design, result, scenario, model)
+    angle = np.degrees(angle)
     axes = Axes(size, (0, 1.02 * angle[-1]), span(normal, shear, zero=True, room=0.12),
                 *((44, half + 26) if narrow else (part + 44, 24)))
     axes.parts.append(drawn)

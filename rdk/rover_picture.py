@@ -51,20 +51,17 @@ def placed(x, y, scale, up, *parts):
     return element("g", "", "".join(parts), transform=f"translate({x:.1f} {y:.1f}) scale({scale:.2f} {up * scale:.2f})")
 
 
-def rover_picture(design, performance=None, scenario=None, *, width=300, scale=None):
+def rover_picture(design, performance, scenario, *, width=300, scale=None):
     """A single rover from the side and from above, as the text of an SVG element; show it by `IPython.display.SVG`.
 
-    Wheels, grousers, wheelbase, array, sinkage, slope and tilt are to scale; the body is sketched from the mass. With
-    `performance` the wheels sink, with `scenario` the rover stands on its slope, with both what fails is marked.
-    `scale` is in pixels for a metre, for rovers side by side; else the rover fills the width.
+    Wheels, grousers, wheelbase, array, sinkage, slope and tilt are to scale; the body is sketched from the mass; what
+    fails is marked. `scale` is in pixels for a metre, for rovers side by side; else the rover fills the width.
     """
-    p, known = performance, performance is not None and scenario is not None
-    slope, tilt, obstacle = (0.0,) * 3 if scenario is None else map(float, (
+    p, bad = performance, failing(design, performance, scenario)
+    slope, tilt, obstacle = map(float, (
         scenario.slope_deg, scenario.panel_tilt_deg, scenario.required_obstacle_height_m))
     r, b, rib, base = design.wheel_radius_m, design.wheel_width_m, design.grouser_height_m, design.wheelbase_m
-    mass = 3 * design.chassis_mass_kg if p is None else p.total_mass_kg
-    sunk = 0.0 if p is None else r / 2 if p.buried else max(p.sinkage_m, 0.0)
-    bad = failing(design, p, scenario) if known else {}
+    mass, sunk = p.total_mass_kg, r / 2 if p.buried else max(p.sinkage_m, 0.0)
     tone = {part: " bad" * (part in bad) for part in ("wheels", "hubs", "array", "body", "obstacle")}
     side, depth = np.sqrt(design.solar_area_m2), Model.track_ratio * base
     length, tall = max(base * 0.96, 0.2), float(np.clip(0.4 * np.cbrt(mass / Model.envelope_density_kg_m3), 0.07, 0.45))
@@ -97,12 +94,11 @@ def rover_picture(design, performance=None, scenario=None, *, width=300, scale=N
                                                f"L{base / 2:.4f} {hub:.4f}M{base / 8:.4f} {pivot:.4f}L0 {hub:.4f}"))
     parts += [_wheel(design, x, r - sunk, (4.5 if tone["hubs"] else 3.0) / scale, tone) for x in wheels.tolist()]
     parts.append(box("o" + tone["body"], -length / 2, floor, length, tall, rx=4 / scale))
-    if p is not None:                                    # boxes as large as their share of the mass
-        for cls, name, at in ("f0", "battery", -0.46), ("f2", "payload", 0.06):
-            kg = getattr(p.mass, name + "_kg")
-            high = 0.8 * tall * float(np.clip(np.sqrt(kg / mass), 0.12, 0.7)) * (kg > 0)
-            parts.append(box(cls, length * at, floor + 0.08 * tall, length * 0.4, high,
-                             f"<title>{name} {kg:.2f} kg</title>", opacity=0.75))
+    for cls, name, at in ("f0", "battery", -0.46), ("f2", "payload", 0.06):
+        kg = getattr(p.mass, name + "_kg")               # boxes as large as their share of the mass
+        high = 0.8 * tall * float(np.clip(np.sqrt(kg / mass), 0.12, 0.7)) * (kg > 0)
+        parts.append(box(cls, length * at, floor + 0.08 * tall, length * 0.4, high, f"<title>{name} {kg:.2f} kg</title>",
+                         opacity=0.75))
     parts.append(element("path", "c3", d=f"M0 {roof:.4f}V{middle:.4f}"))
     array = element("path", "l w c0" + tone["array"], d="M{:.4f} {:.4f}L{:.4f} {:.4f}".format(*tips[0], *tips[1]))
     scene = placed(left, level, scale, -1, element("g", "", "".join(parts), transform=f"rotate({slope:g})"), array)
@@ -121,7 +117,7 @@ def rover_picture(design, performance=None, scenario=None, *, width=300, scale=N
              *(text(width / 2, end + 13 * k, said, "bad s m") for k, said in enumerate(bad.values()))]
     words = (f"Rover to scale: {design.wheel_count} wheels of {1000 * r:.0f} mm radius and {1000 * b:.0f} mm width, "
              f"wheelbase {base:.3g} m, on a slope of {slope:g} degrees, array of {design.solar_area_m2:.3g} m2 tilted "
-             f"{tilt:g} degrees" + ("" if p is None or p.buried else f", wheels {1000 * sunk:.0f} mm deep")
+             f"{tilt:g} degrees" + ("" if p.buried else f", wheels {1000 * sunk:.0f} mm deep")
              + (f". Marked: {'; '.join(bad.values())}" if bad else "") + ".")
     return svg(width, round(end + 13 * max(len(bad) - 1, 0) + 6), scene + sheet + plan + "".join(notes), words)
 
@@ -136,11 +132,8 @@ def _wheel(design, x, z, hub, tone):
             + element("circle", "f3" + tone["hubs"], cx=x, cy=z, r=hub))
 
 
-def wheel_picture(design, performance, scenario, *, model=Model(), width=300, height=260, stress=None):
-    """The wheel of a single rover in its soil at the slip balance, stresses as arrows, as an SVG element's text.
-
-    `stress` is what `contact` returns, where that is known.
-    """
+def wheel_picture(design, performance, scenario, *, model=Model(), width=300, height=260):
+    """The wheel of a single rover in its soil at the slip balance, stresses as arrows, as an SVG element's text."""
     r, p, ground = design.wheel_radius_m, performance, height * 0.66
     scale = min(width * 0.84, height * 0.66) / (2 * (r + design.grouser_height_m))
     z = r - (r if p.buried else p.sinkage_m)
@@ -149,8 +142,8 @@ def wheel_picture(design, performance, scenario, *, model=Model(), width=300, he
         notes = text(width / 2, 18, "buried: no contact carries the load", "m bad")
         words = "The wheel is buried: no contact carries the load."
     else:
-        entry, *along = stress or contact(design, p, scenario, model, 9)
-        angle, normal, shear = (values[::len(values) // 8] for values in along)
+        along = contact(design, p, scenario, model)
+        angle, normal, shear = (values[::8] for values in along)
         longest = (0.34 * height - 34) / scale / max(np.abs(normal).max(), np.abs(shear).max(), 1e-9)
         sin, cos = np.sin(angle), np.cos(angle)          # pressed into the soil; shear drags it backwards
         for cls, dx, dz in (("l c0", sin * normal, -cos * normal), ("l c1", -cos * shear, -sin * shear)):
@@ -160,14 +153,14 @@ def wheel_picture(design, performance, scenario, *, model=Model(), width=300, he
                          'class="f1 b">shear</tspan> along it', x=6, y=height - 20)
                  + text(6, height - 6, f"sinkage {1000 * p.sinkage_m:.1f} mm, slip {p.slip:.2f}", "s q"))
         words = (f"Wheel of {1000 * r:.0f} mm radius, {1000 * p.sinkage_m:.1f} mm deep, in contact over "
-                 f"{np.degrees(entry):.0f} degrees; normal stress up to {along[1].max():.1f} kPa, shear to "
+                 f"{np.degrees(angle[-1]):.0f} degrees; normal stress up to {along[1].max():.1f} kPa, shear to "
                  f"{along[2].max():.1f} kPa.")
     soil = element("rect", "soil", x=0, y=ground, width=width, height=height - ground)
     return svg(width, height, soil + placed(width / 2, ground, scale, -1, body) + notes, words)
 
 
-def contact(design, performance, scenario, model, points):
-    """Entry angle (rad); angles (rad), normal and shear stress (kPa) along the contact, of shape (points,)."""
+def contact(design, performance, scenario, model, points=65):
+    """Angles (rad) from the lowest point to the entry, normal and shear stress (kPa) there, each of shape (points,)."""
     options = {name: getattr(model, name) for name in terramechanics.OPTIONS}
     load = (performance.total_mass_kg * model.gravity_m_s2 * np.cos(np.radians(scenario.slope_deg))
             / design.wheel_count)
@@ -175,4 +168,4 @@ def contact(design, performance, scenario, model, points):
     angle = np.linspace(0, forces.entry_angle_rad, points)
     found = terramechanics.contact_stress(design.wheel, scenario.soil, forces.entry_angle_rad, performance.slip, angle,
                                           stress_level=forces.stress_level, **options)
-    return forces.entry_angle_rad, angle, found.normal_stress_pa / 1000, found.shear_stress_pa / 1000
+    return angle, found.normal_stress_pa / 1000, found.shear_stress_pa / 1000
