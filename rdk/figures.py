@@ -9,7 +9,6 @@ import html
 import io
 import threading
 
-import matplotlib
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
@@ -83,9 +82,7 @@ def live(draw, *, size=(5.2, 3.6), **sliders):
     def redraw(change=None):
         with lock:                                       # JupyterLab may call from several threads
             file = io.BytesIO()
-            with plt.rc_context():
-                matplotlib.rcdefaults()                  # a person's matplotlibrc stays outside
-                plt.rcParams.update(STYLE)
+            with plt.style.context(STYLE, after_reset=True):         # a person's matplotlibrc stays outside
                 figure = Figure(figsize=size)
                 box.sentence = draw(figure, **{name: control.value for name, control in controls.items()})
                 figure.savefig(file, format="png", dpi=100)

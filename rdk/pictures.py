@@ -31,9 +31,7 @@ def alt(picture):
 
 def shade(share):
     """A colour from dark blue to yellow for a share from 0 to 1; it also reads in grey."""
-    place = 5 * min(max(share, 0.0), 1.0) if share == share else 0.0
-    i = min(int(place), 4)
-    return "#" + bytes(round(a + (place - i) * (b - a)) for a, b in zip(SHADES[i], SHADES[i + 1])).hex()
+    return "#" + bytes(round(np.interp(5 * share, range(6), part)) for part in zip(*SHADES)).hex()
 
 
 def span(*values, zero=False, room=0.06):
@@ -62,16 +60,6 @@ def ticks(low, high, count=5, log=False):
 def path(xs, ys, close=""):
     """The data of a path through pixels."""
     return "M" + ("%.1f %.1fL" * len(xs))[:-1] % tuple(np.stack([xs, ys], 1).ravel().tolist()) + close
-
-
-def seen(*lines):
-    """Which points of lines over the same xs can be seen: every so many, and those where one bends."""
-    kept = np.arange(len(lines[0])) % max(len(lines[0]) // 200, 1) == 0
-    for ys in lines if not kept.all() else ():
-        bend = np.abs(np.diff(ys, 2, prepend=ys[:1], append=ys[-1:])) > 0.4
-        kept |= bend | np.roll(bend, 1) | np.roll(bend, -1)
-    kept[-1] = True
-    return kept
 
 
 def sign(kind, cls, x, y, size=5, **more):
@@ -105,11 +93,9 @@ class Axes:
         return self.box[3] - self.per_y * (value - self.ys[0])
 
     def add(self, *arguments, **attributes):
-        """Append an element."""
         self.parts.append(element(*arguments, **attributes))
 
     def say(self, x, y, words, cls=""):
-        """Append words at a pixel."""
         self.parts.append(text(x, y, words, cls))
 
     def frame(self, title="", unit="", below="", count=4):
@@ -124,20 +110,26 @@ class Axes:
         self.add("text", "b", f'{html.escape(title.capitalize())} <tspan class="q s">{unit}</tspan>', x=x0, y=y0 - 7)
         self.say((x0 + x1) / 2, y1 + 30, below, "q m")
 
+    def seen(self, xs, *lines):
+        """Pixels of lines over the same xs, as far as they can be seen: every so many points, and where one bends."""
+        px, *lines = np.broadcast_arrays(self.x(xs), *map(self.y, lines))
+        kept = np.arange(len(px)) % max(len(px) // 200, 1) == 0
+        for ys in lines if not kept.all() else ():
+            bend = np.abs(np.diff(ys, 2, prepend=ys[:1], append=ys[-1:])) > 0.4
+            kept |= bend | np.roll(bend, 1) | np.roll(bend, -1)
+        kept[-1] = True
+        return [values[kept] for values in (px, *lines)]
+
     def line(self, xs, ys, cls="c0", **more):
         """A line through points that breaks where there is none."""
-        px, py = np.broadcast_arrays(self.x(xs), self.y(ys))
-        kept = seen(py)
-        px, py = px[kept], py[kept]
+        px, py = self.seen(xs, ys)
         turns = np.flatnonzero(np.diff(np.isfinite(py))) + 1
         runs = [path(*run) for run in zip(np.split(px, turns), np.split(py, turns)) if np.isfinite(run[1][0])]
         self.add("path", "l " + cls, d="".join(runs), **more)
 
     def area(self, xs, low, high, cls="f0", opacity=0.18):
         """A band between two lines."""
-        px, low, high = np.broadcast_arrays(self.x(xs), self.y(low), self.y(high))
-        kept = seen(low, high)
-        px, low, high = px[kept], low[kept], high[kept]
+        px, low, high = self.seen(xs, low, high)
         self.add("path", cls, d=path(np.append(px, px[::-1]), np.append(high, low[::-1]), "Z"), opacity=opacity)
 
     def stretches(self, edges, flags, **look):
@@ -196,14 +188,14 @@ class Axes:
         return svg(*self.size, "".join(self.parts), words, role)
 
 
-def bars(size, top, rows, below, zero=False, joined=False):
-    """Axes with bars, filled where they rise and open where they fall, `joined` ones continuing each other.
+def bars(size, top, rows, below, joined=False):
+    """Axes with bars from 0, or `joined` ones that continue each other, filled where they rise, open where they fall.
 
     A row is (name, start, end, words, marks); marks are (letter, class, value), one below the other.
     """
     left, tall = 72 + LETTER * max(len(row[0]) for row in rows), (size[1] - 44 - top) / max(len(rows), 4)
     reach = [value for _, *ends, _, marks in rows for value in (*ends, *(value for *_, value in marks))]
-    axes = Axes(size, span(reach, zero=zero), (0, 1), left, top, 20)
+    axes = Axes(size, span(reach, zero=not joined), (0, 1), left, top, 20)
     axes.frame(below=below, count=0)
     for k, (name, *ends, words, marks) in enumerate(rows):
         y, (a, b) = top + k * tall, map(axes.x, ends)
@@ -274,7 +266,7 @@ def mass(result, size=SIZE, spans=None, ghosts=()):
     items = sorted(((value, name) for name, value in result.mass.items.items() if value > 0.0005), reverse=True)
     rows = [(label(name)[0], 0.0, value, f"{value:.2f}", [(letter, cls, getattr(other.mass, name))
                                                           for letter, cls, other in ghosts]) for value, name in items]
-    axes = bars(size, 24, rows, "mass (kg)", zero=True)
+    axes = bars(size, 24, rows, "mass (kg)")
     said = f"{result.total_mass_kg:.2f} kg in all"
     said += "" if spans is None else f", 90 % of draws {spans[0]:.1f} to {spans[1]:.1f}"
     axes.say(8, 14, said, "b")
@@ -310,17 +302,16 @@ def fleet(result, rovers, size=SIZE, spans=None, ghosts=()):
         order.setdefault(tuple(at), []).append(name)     # rovers at one place share a name
     here = result.total_mass_kg, result.range_km
     (x0, x1), (y0, y1) = spans or ((value, value) for value in here)
-    others = [(other.total_mass_kg, other.range_km, name, "s b f" + cls[1], "dot", "l " + cls, 6)
-              for name, cls, other in ghosts]
-    across = [*masses, x0, x1, here[0], *(at[0] for at in others)]
-    up = span(ranges, [y0, y1, here[1], *(at[1] for at in others)], zero=True, room=0.1)
+    spots = [*((other.total_mass_kg, other.range_km, name, "s b f" + cls[1], "dot", "l " + cls, 6)
+               for name, cls, other in ghosts), (*here, "", "", "dot", "f0", 6)]
+    across = [*masses, x0, x1, *(at[0] for at in spots)]
+    up = span(ranges, [y0, y1, *(at[1] for at in spots)], zero=True, room=0.1)
     axes = Axes(size, (0.8 * min(across), 1.3 * max(across)), up, 50, log=True)
     axes.frame("Range", "km", "mass (kg), logarithmic")
     x, y, left, right, low, high = axes.x(here[0]), axes.y(here[1]), *map(axes.x, (x0, x1)), *map(axes.y, (y0, y1))
     axes.add("path", "l c0 t", d=f"M{left:.1f} {y:.1f}H{right:.1f}M{x:.1f} {low:.1f}V{high:.1f}")
     axes.taken += [(left, y - 1, right, y + 1), (x - 1, high, x + 1, low)]
-    axes.spots(*((*at, ", ".join(found), "s", "square", "f1", 4) for at, found in order.items()), *others,
-               (*here, "", "", "dot", "f0", 6))
+    axes.spots(*((*at, ", ".join(found), "s", "square", "f1", 4) for at, found in order.items()), *spots)
     axes.legend(("this design", "dot", "f0"), ("published rovers", "square", "f1", {"size": 4}))
     rest = ", ".join(f"{n} {r:.1f} km" for n, r in zip(names, ranges))
     return axes.picture(f"Range against mass: this design reaches {result.range_km:.2f} km with "
@@ -352,7 +343,7 @@ def why(metric, names, shares, baseline, size=SIZE):
                         + "; ".join(f"{name} {step:+.3g}" for name, step in steps) + ".")
 
 
-def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, size=SIZE, log=False, old=False):
+def curve(x_label, metric, values, nominal, stalled, band, here, rovers=(), size=SIZE, log=False, old=False):
     """One metric along one variable, with its interval (where, low, high), this design, and the published rovers.
 
     The interval may be None; it is paler where it is `old`, that of a state before.
@@ -367,9 +358,8 @@ def curve(x_label, metric, values, nominal, stalled, band, here, rovers=None, si
         axes.area(*band, opacity=0.07 if old else 0.18)
     axes.line(values, nominal)
     axes.taken += zip(axes.x(values) - 1, axes.y(nominal) - 1, axes.x(values) + 1, axes.y(nominal) + 1)
-    points = [] if rovers is None else [
-        (x, float(np.clip(y, *axes.ys)), name, "s", "square", "f1", 3.5) for x, y, name in zip(*rovers)
-        if values[0] <= x <= values[-1] and np.isfinite(y)]
+    points = [(x, float(np.clip(y, *axes.ys)), name, "s", "square", "f1", 3.5) for x, y, name in zip(*rovers)
+              if values[0] <= x <= values[-1] and np.isfinite(y)]
     axes.spots(*points, (*here, "", "", "dot", "f3", 6))
     stalls = [("cannot drive", "square", "", HATCHED)] if np.any(stalled) else []
     axes.legend(("this design", "dot", "f3"), ("90 % of draws", "square", "f0", {"opacity": 0.3}), *stalls)

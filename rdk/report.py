@@ -7,8 +7,8 @@ from __future__ import annotations
 import base64
 import functools
 import html
+from collections import namedtuple
 from string import Template
-from typing import NamedTuple
 
 import numpy as np
 
@@ -52,23 +52,12 @@ explorer.</p>
 </body></html>
 """)
 SIZE = 470, 215                                          # of a picture, in pixels of its own
-_text = functools.partial(html.escape, quote=False)
+Requirement = namedtuple("Requirement", "metric words nominal low high met share driver")
+"""A demand on one metric, and how surely a design meets it.
 
-
-class Requirement(NamedTuple):
-    """A demand on one metric, and how surely a design meets it.
-
-    `low` and `high` span the 90 % interval, `share` is the share of draws in which the demand holds, `driver`
-    the uncertain input with the strongest rank correlation to the metric ("" where the metric does not vary).
-    """
-    metric: str
-    words: str
-    nominal: float
-    low: float
-    high: float
-    met: bool
-    share: float
-    driver: str
+`low` and `high` span the 90 % interval, `share` is the share of draws in which the demand holds, `driver` the uncertain
+input with the strongest rank correlation to the metric ("" where the metric does not vary).
+"""
 
 
 def asked(scenario):
@@ -140,11 +129,14 @@ def report(design, scenario, title="", notes="", *, front=None, baseline=None, b
     missed = [d.words for d in demands if not d.met]
     verdict = f"Misses {len(missed)} of {len(demands)} demands: {'; '.join(missed)}." if missed else (
         f"Meets all {len(demands)} demands of the mission.")
-    changed = {name: value for name, value in model.numbers().items() if value != getattr(Model(), name)}
+    risks = [f"“{d.words}” fails in {100 * (1 - d.share):.0f} % of the draws"
+             + (f"; it moves most with the {explain.label(d.driver)[0]}." if d.driver else ".")
+             for d in sorted(demands, key=lambda d: d.share)[:3] if d.share < 0.995]
     limits = {name: (v.low, v.high) for name, v in DESIGN_SPACE.items()} | (bounds or {})
     outside = {name: not low * (1 - 1e-12) <= getattr(design, name) <= high * (1 + 1e-12)
                for name, (low, high) in limits.items()}
-    at_risk = sorted((d for d in demands if d.share < 0.995), key=lambda d: d.share)[:3]
+    changed = [f"{name} = {value:g}" for name, value in model.numbers().items() if value != getattr(Model(), name)]
+    notes = [part for part in notes.split("\n\n") if part.strip()]
     return PAGE.substitute(
         title=_text(title or f"A rover for {scenario.name}"), mission=_text(_mission_words(scenario)),
         mark=" missed" * bool(missed),
@@ -159,24 +151,22 @@ def report(design, scenario, title="", notes="", *, front=None, baseline=None, b
             (not d.met, d.words, *(("yes" if d.met else "no", "–") if d.metric == "feasible" else
                                    (f"{d.nominal:.3g}", f"{d.low:.3g} to {d.high:.3g}")), f"{100 * d.share:.0f} %")
             for d in demands]),
-        risks=_paragraphs([
-            f"“{d.words}” fails in {100 * (1 - d.share):.0f} % of the draws"
-            + (f"; it moves most with the {explain.label(d.driver)[0]}." if d.driver else ".") for d in at_risk]
-            or ["Every demand holds in all draws of the uncertain inputs."]),
+        risks=_paragraphs(risks or ["Every demand holds in all draws of the uncertain inputs."]),
         candidates="" if not candidates else "<h2>Candidates</h2>" + _table(
             "design;mass;range;slope capability;all demands hold in", [
                 (False, name, f"{p.total_mass_kg:.2f} kg", f"{p.range_km:.3g} km", f"{p.slope_capability_deg:.1f}°",
                  f"{100 * share:.0f} %") for name, p, share in zip(designs, found.performance, odds)]),
-        drawn="\n".join(drawn), notes="<h2>Notes</h2>" * bool(notes.strip()) + _paragraphs(
-            part for part in notes.split("\n\n") if part.strip()),
-        draws=draws, model=_text(", ".join(f"{name} = {value:g}" for name, value in changed.items())
-                                 or "the paper's coefficients"),
+        drawn="\n".join(drawn), notes="<h2>Notes</h2>" * bool(notes) + _paragraphs(notes),
+        draws=draws, model=_text(", ".join(changed) or "the paper's coefficients"),
         data=base64.b64encode(catalog.to_json(design, scenario).encode()).decode())
 
 
 def write_report(design, scenario, path, title="", notes="", **options):
     """Write the page of `report` to an HTML file; `options` go to `report`. Returns the path."""
     return write(report(design, scenario, title, notes, **options), path)
+
+
+_text = functools.partial(html.escape, quote=False)
 
 
 def _paragraphs(words):

@@ -35,7 +35,6 @@ def element(tag, cls, inside="", **attributes):
 
 
 def text(x, y, words, cls=""):
-    """A text element."""
     return element("text", cls, html.escape(str(words), quote=False), x=float(x), y=float(y))
 
 

@@ -202,7 +202,7 @@ def swept(a, size):
         more = np.linspace(points[jump], points[jump + 1], 12)[1:-1]
         points, values, stalled = (np.insert(old, jump + 1, new) for old, new in zip(
             (points, values, stalled), (more, *found({name: more}))))
-    others = None
+    others = ()
     if name in DESIGN_SPACE:                             # a mission's field is not the rovers' own
         others = getattr(published()[1], name) * f.factor, *rovers(a, metric)
     band = a.band[1] if a.band[0] == (name, metric) else None
