@@ -50,17 +50,20 @@ def placed(x, y, scale, up, *parts):
     return element("g", "", "".join(parts), transform=f"translate({x:.1f} {y:.1f}) scale({scale:.2f} {up * scale:.2f})")
 
 
-def rover_picture(design, performance, scenario, *, width=300, scale=None):
+def rover_picture(design, performance=None, scenario=None, *, width=300, scale=None):
     """A single rover from the side and from above, as the text of an SVG element; show it by `IPython.display.SVG`.
 
-    Wheels, grousers, wheelbase, array, sinkage, slope and tilt are to scale; the body is sketched from the mass; what
-    fails is marked. `scale` is in pixels for a metre, for rovers side by side; else the rover fills the width.
+    Wheels, grousers, wheelbase, array, sinkage, slope and tilt are to scale; the body is sketched from the mass. With
+    `performance` the wheels sink, with `scenario` the rover stands on its slope, with both what fails is marked.
+    `scale` is in pixels for a metre, for rovers side by side; else the rover fills the width.
     """
-    p, bad = performance, failing(design, performance, scenario)
-    slope, tilt, obstacle = map(float, (
+    p, known = performance, performance is not None and scenario is not None
+    slope, tilt, obstacle = (0.0,) * 3 if scenario is None else map(float, (
         scenario.slope_deg, scenario.panel_tilt_deg, scenario.required_obstacle_height_m))
     r, b, rib, base = design.wheel_radius_m, design.wheel_width_m, design.grouser_height_m, design.wheelbase_m
-    mass, sunk = p.total_mass_kg, r / 2 if p.buried else max(p.sinkage_m, 0.0)
+    mass = 3 * design.chassis_mass_kg if p is None else p.total_mass_kg
+    sunk = 0.0 if p is None else r / 2 if p.buried else max(p.sinkage_m, 0.0)
+    bad = failing(design, p, scenario) if known else {}
     tone = {part: " bad" * (part in bad) for part in ("wheels", "hubs", "array", "body", "obstacle")}
     side, depth = np.sqrt(design.solar_area_m2), Model.track_ratio * base
     length, tall = max(base * 0.96, 0.2), float(np.clip(0.4 * np.cbrt(mass / Model.envelope_density_kg_m3), 0.07, 0.45))
@@ -93,11 +96,12 @@ def rover_picture(design, performance, scenario, *, width=300, scale=None):
                                                f"L{base / 2:.4f} {hub:.4f}M{base / 8:.4f} {pivot:.4f}L0 {hub:.4f}"))
     parts += [_wheel(design, x, r - sunk, (4.5 if tone["hubs"] else 3.0) / scale, tone) for x in wheels.tolist()]
     parts.append(box("o" + tone["body"], -length / 2, floor, length, tall, rx=4 / scale))
-    for cls, name, at in ("f0", "battery", -0.46), ("f2", "payload", 0.06):
-        kg = getattr(p.mass, name + "_kg")               # boxes as large as their share of the mass
-        high = 0.8 * tall * float(np.clip(np.sqrt(kg / mass), 0.12, 0.7)) * (kg > 0)
-        parts.append(box(cls, length * at, floor + 0.08 * tall, length * 0.4, high, f"<title>{name} {kg:.2f} kg</title>",
-                         opacity=0.75))
+    if p is not None:                                    # boxes as large as their share of the mass
+        for cls, name, at in ("f0", "battery", -0.46), ("f2", "payload", 0.06):
+            kg = getattr(p.mass, name + "_kg")
+            high = 0.8 * tall * float(np.clip(np.sqrt(kg / mass), 0.12, 0.7)) * (kg > 0)
+            parts.append(box(cls, length * at, floor + 0.08 * tall, length * 0.4, high,
+                             f"<title>{name} {kg:.2f} kg</title>", opacity=0.75))
     parts.append(element("path", "c3", d=f"M0 {roof:.4f}V{middle:.4f}"))
     array = element("path", "l w c0" + tone["array"], d="M{:.4f} {:.4f}L{:.4f} {:.4f}".format(*tips[0], *tips[1]))
     scene = placed(left, level, scale, -1, element("g", "", "".join(parts), transform=f"rotate({slope:g})"), array)
@@ -116,7 +120,7 @@ def rover_picture(design, performance, scenario, *, width=300, scale=None):
              *(text(width / 2, end + 13 * k, said, "bad s m") for k, said in enumerate(bad.values()))]
     words = (f"Rover to scale: {design.wheel_count} wheels of {1000 * r:.0f} mm radius and {1000 * b:.0f} mm width, "
              f"wheelbase {base:.3g} m, on a slope of {slope:g} degrees, array of {design.solar_area_m2:.3g} m2 tilted "
-             f"{tilt:g} degrees" + ("" if p.buried else f", wheels {1000 * sunk:.0f} mm deep")
+             f"{tilt:g} degrees" + ("" if p is None or p.buried else f", wheels {1000 * sunk:.0f} mm deep")
              + (f". Marked: {'; '.join(bad.values())}" if bad else "") + ".")
     return svg(width, round(end + 13 * max(len(bad) - 1, 0) + 6), scene + sheet + plan + "".join(notes), words)
 
