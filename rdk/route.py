@@ -1,4 +1,4 @@
-"""Ways over a height map: what a metre costs, the cheapest way, and the march along it.
+"""Ways over a height map: what a metre costs, the cheapest way, rocks in it, and the march along it.
 
 Energy and time come from the wheel model at each slope, the way from SciPy's Dijkstra on the eight neighbours of each
 cell. Slopes shorter than a cell, turning, and braking that would charge the battery are left out.
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import mission, power, sky
+from . import catalog, mission, power, sky
 from ._fields import Real, brief, check, listed, require
 from .design import Design, Model, Scenario
 from .sampling import single
@@ -46,6 +46,30 @@ def cost(design: Design, scenario: Scenario, *, model: Model = Model()) -> Calla
     wheel, second = per_metre(design, scenario, slope, model=model)
     joule = wheel + (design.avionics_power_w + scenario.payload_power_w) * second
     return lambda slope_deg: np.interp(slope_deg, slope, joule, left=np.inf, right=np.inf)
+
+
+def rocks_per_m2(diameter_m: Real, area_fraction: Real) -> Real:
+    """Rocks wider than `diameter_m` on a square metre, where rocks cover `area_fraction` of the ground.
+
+    Golombek & Rapp (1997): those wider than D cover k exp(-q D), q = 1.79 + 0.152 / k. One covers pi D^2 / 4, so
+    N(> D) is the integral of 4 k q exp(-q x) / (pi x^2) from D on.
+    """
+    from scipy.special import exp1
+    k, diameter = check("area_fraction", area_fraction, 0, 1), check("diameter_m", diameter_m, above=0)
+    with np.errstate(all="ignore"):
+        q = 1.79 + np.divide(0.152, k)
+        return np.where(k > 0, 4 * k * q / np.pi * (np.exp(-q * diameter) / diameter - q * exp1(q * diameter)), 0.0)[()]
+
+
+def detour_factor(obstacle_m: Real, width_m: Real, area_fraction: Real) -> Real:
+    """Length driven over length gained, where rocks too tall to climb are driven around one by one.
+
+    A rover of this width climbs rocks as tall as `obstacle_m` (`Performance.obstacle_capability_m`), half as tall as
+    they are wide. A metre of its swath meets those whose middle lies within its width and their diameter, and passing
+    one costs about that length.
+    """
+    diameter = 2 * check("obstacle_m", obstacle_m, above=0)
+    return 1 + rocks_per_m2(diameter, area_fraction) * (check("width_m", width_m, above=0) + diameter) ** 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +187,14 @@ def along(terrain: Terrain, cells: np.ndarray, *, skyline_every_m: float | None 
                tuple(terrain.skyline(x[i], y[i], height_m, beyond=beyond) for i in stops))
 
 
+def ridge() -> Way:
+    """The tabulated Way along Connecting Ridge, 1.9 km near the south pole, with its skylines 1 m above ground."""
+    way, seen = catalog.table("ridge_route.csv"), catalog.table("ridge_route_skylines.csv").set_index("azimuth_deg")
+    slope = np.degrees(np.arctan2(np.diff(way.height_m), np.diff(way.distance_m)))
+    return Way(way.distance_m, slope, way.latitude_deg, way.longitude_deg, [float(name[3:-1]) for name in seen],
+               [sky.Skyline(seen.index, seen[name]) for name in seen])
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class March:
     """What became of a rover on its way, step by step; arrays with one column a lane, or none for one lane.
@@ -193,7 +225,7 @@ def march(way: Way, design: Design, scenario: Scenario, *, model: Model = Model(
     reaches the floor. The payload runs during the stops for science only. Of the scenario its `start_utc`, soil,
     payload, panel, speed and duration count. `delay_h`, the hours after `start_utc` at which to set out, broadcasts
     with the designs, so that one call tries many dates. To `follow_sun` the panel turns; else it keeps the scenario's
-    azimuth. `detour` is the length driven over that of the way.
+    azimuth. `detour` is the length driven over that of the way, as from `detour_factor`.
     """
     require(way=(way, Way), design=(design, Design), scenario=(scenario, Scenario), model=(model, Model))
     if scenario.start_utc is None:

@@ -127,3 +127,11 @@ def lit_fraction(elevation_deg: Real, azimuth_deg: Real, skyline: Skyline | Arra
     edge = 0.0 if skyline is None else Skyline.of(skyline).at(azimuth_deg)
     u = np.clip((floats("elevation_deg", elevation_deg) - edge) / SUN_RADIUS_DEG, -1, 1)
     return 0.5 + (np.arcsin(u) + u * np.sqrt(1 - u * u)) / np.pi
+
+
+def longest_run(flags: ArrayLike, step: float = 1.0) -> float:
+    """Length of the longest unbroken run of true `flags` (one dimension), in units of `step`."""
+    if np.ndim(flags) != 1:
+        raise ValueError(f"flags must have one dimension; got {np.ndim(flags)}")
+    edges = np.flatnonzero(np.diff(np.r_[0, np.asarray(flags, bool).astype(np.int8), 0]))
+    return (edges[1::2] - edges[::2]).max(initial=0) * step

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ._fields import Real, brief, check, together
+from .terramechanics import Soil, Wheel, wheel_forces
 
 LEAST_BODY_HEIGHT_M = 0.05                               # a warm box holds at least the height of a cell or a board
 RIGID_BELLY_RADII, ROCKER_BELLY_RADII = 1.2, 2.0         # height of the belly above the ground, in wheel radii
@@ -119,3 +120,13 @@ def stance(total_mass_kg: Real, wheels_mass_kg: Real, wheel_radius_m: Real, whee
     top = np.maximum(total_mass_kg / (envelope_density_kg_m3 * footprint), belly + LEAST_BODY_HEIGHT_M)
     share = wheels_mass_kg / np.asarray(total_mass_kg)
     return Stance(track, belly[()], (share * radius + (1 - share) * (belly + top) / 2)[()])
+
+
+def static_pressure_kpa(wheel: Wheel, soil: Soil, load_n: Real) -> Real:
+    """Mean vertical pressure under a wheel at rest: its load over width and chord, W / (2 b r sin(theta_s)).
+
+    The arc theta_s on either side is that of the imposed-arc kernel, which gets sinkage at rest right where it can be
+    checked; `Performance.ground_pressure_kpa` is that of the kernel in use, on the move. NaN where the wheel is buried.
+    """
+    angle = wheel_forces(wheel, soil, load_n, 0.0, kernel="imposed-arc").entry_angle_rad
+    return load_n / (2 * wheel.width_m * wheel.radius_m * np.sin(angle)) / 1000

@@ -113,6 +113,14 @@ class Terrain:
         """Steepest slope of each cell in degrees, over a baseline of two cells: shorter slopes are steeper."""
         return np.degrees(np.arctan(np.hypot(*np.gradient(self.height_m, self.step_m))))
 
+    def hillshade(self, azimuth_deg: float = 315.0, elevation_deg: float = 30.0) -> np.ndarray:
+        """Brightness 0 to 1 of each cell, lit from an azimuth clockwise from the top of the map; no cast shadows."""
+        down, right = np.gradient(self.height_m, self.step_m)
+        azimuth, elevation = np.radians([check(name, angle, scalar=True) for name, angle in (
+            ("azimuth_deg", azimuth_deg), ("elevation_deg", elevation_deg))])
+        facing = np.sin(elevation) - np.cos(elevation) * (np.sin(azimuth) * right - np.cos(azimuth) * down)
+        return np.clip(facing / np.sqrt(1 + right**2 + down**2), 0, 1)
+
     def skyline(self, x: float, y: float, height_m: float = 2.0, *, beyond: Sequence["Terrain"] = (),
                 directions: int = 720, farthest_m: float = 180e3) -> Skyline:
         """Skyline of an eye above the ground at x, y, by great circles with the Moon's curvature exact.

@@ -14,7 +14,6 @@ import pytest
 
 import rdk
 import searches
-from on_site import ridge
 from rdk.design import DESIGN_SPACE, Problem
 from rdk.terramechanics import Soil, Wheel
 
@@ -408,7 +407,7 @@ def test_a_problem_is_a_value_and_a_mission_takes_nothing_else():
 def test_results_of_long_arrays_show_their_ends():
     load = np.linspace(5.0, 50.0, 200)
     for result in (rdk.terramechanics.wheel_forces(DESIGN.wheel, SOIL, load, 0.1),
-                   rdk.terramechanics.slip_balance(DESIGN.wheel, SOIL, load, 1.0), ridge(),
+                   rdk.terramechanics.slip_balance(DESIGN.wheel, SOIL, load, 1.0), rdk.route.ridge(),
                    rdk.stability.axle_loads(load, 0.5, 0.2, 5.0, wheel_count=4)):
         text = repr(result)
         assert text.startswith(type(result).__name__ + "(") and len(text) < 1200 and "..." in text
@@ -458,12 +457,13 @@ def test_the_kernel_brings_its_own_transition():
     (lambda: rdk.terramechanics.slip_balance(DESIGN, SOIL, 5, 1), r"wheel .*; got Design"),
     (lambda: rdk.terramechanics.slope_capability(DESIGN.wheel, "apollo-nominal", 5), r"soil .*rdk.soil\('apollo"),
     (lambda: rdk.terramechanics.grouser_lift("Rashid-1"), r"wheel .*\.wheel"),
+    (lambda: rdk.stability.static_pressure_kpa(DESIGN.wheel, "apollo", 5), r"soil .*rdk.soil"),
     (lambda: rdk.route.per_metre("Rashid-1", SCENARIO, 3), r"design .*rdk.rover"),
     (lambda: rdk.route.cost(DESIGN, "mare"), r"scenario .*rdk.scenario"),
-    (lambda: rdk.route.march(ridge(), "Rashid-1", SCENARIO), r"design .*rdk.rover"),
+    (lambda: rdk.route.march(rdk.route.ridge(), "Rashid-1", SCENARIO), r"design .*rdk.rover"),
     (lambda: rdk.sampling.uncertain_inputs("mare"), r"scenario .*rdk.scenario"),
     (lambda: rdk.catalog.to_csv(DESIGN, "fast"), "performance must be a Record; got 'fast'"),
-    (lambda: rdk.catalog.at_latitude("mare", 5.0), r"scenario .*rdk.scenario")], ids=range(19))
+    (lambda: rdk.catalog.at_latitude("mare", 5.0), r"scenario .*rdk.scenario")], ids=range(20))
 def test_a_name_where_a_record_is_due_is_answered_with_how_to_get_one(call, message):
     with pytest.raises(TypeError, match=message):
         call()

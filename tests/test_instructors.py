@@ -309,7 +309,7 @@ def test_a_handout_has_what_it_needs_and_nothing_of_the_instructors(given_out):
     assert not [path for path in given_out.rglob("*") if path.name in (*instructors.OURS, "exemplars")]
     assert "For instructors" not in (given_out / "README.md").read_text(encoding="utf-8")
     done = subprocess.run([sys.executable, "-c",
-                           "import drawings, ledger, on_site, registry, rediscovery, rules, searches, sensitivity\n"
+                           "import drawings, ledger, registry, rediscovery, rules, searches, sensitivity\n"
                            "import validation, wheel_doubts\n"
                            "from exercises import check\n"
                            "assert check('01.1', 2 ** (2 / 3)) and not check('01.1', ...)"], cwd=given_out,

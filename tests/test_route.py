@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-import on_site
 import rdk
 from rdk import route, sky, terrain
 from rdk.route import Way
@@ -71,16 +70,16 @@ def test_costs_broadcast():
 def test_rocks_are_counted_by_the_integral_of_their_area(diameter, k):
     q = 1.79 + 0.152 / k
     count = quad(lambda x: 4 * k * q * np.exp(-q * x) / (np.pi * x * x), diameter, np.inf, epsabs=0)[0]
-    np.testing.assert_allclose(on_site.rocks_per_m2(diameter, k), count, rtol=1e-7)
+    np.testing.assert_allclose(route.rocks_per_m2(diameter, k), count, rtol=1e-7)
 
 
 def test_rocks_and_detours_in_their_limits():
-    assert on_site.rocks_per_m2(0.1, 0.0) == 0 and on_site.detour_factor(0.05, 0.5, 0.0) == 1
-    counts = on_site.rocks_per_m2(np.array([[0.1], [0.2]]), np.array([0.005, 0.02, 0.1]))
+    assert route.rocks_per_m2(0.1, 0.0) == 0 and route.detour_factor(0.05, 0.5, 0.0) == 1
+    counts = route.rocks_per_m2(np.array([[0.1], [0.2]]), np.array([0.005, 0.02, 0.1]))
     assert counts.shape == (2, 3) and np.all(np.diff(counts, axis=1) > 0) and np.all(counts[1] < counts[0])
-    four, six = (on_site.detour_factor(ratio * 0.1, 0.5, 0.02) for ratio in (0.5, 1.25))
+    four, six = (route.detour_factor(ratio * 0.1, 0.5, 0.02) for ratio in (0.5, 1.25))
     assert four > six > 1                                # six wheels climb taller rocks
-    rocks = on_site.rocks_per_m2(0.1, 0.02)                # a swath of 0.5 m and the rock's 0.1, each costing as much
+    rocks = route.rocks_per_m2(0.1, 0.02)                # a swath of 0.5 m and the rock's 0.1, each costing as much
     np.testing.assert_allclose(four, 1 + rocks * 0.6 * 0.6, rtol=1e-12)
 
 
@@ -199,10 +198,10 @@ def test_bad_requests_are_refused(change, words):
     (lambda: route.per_metre("x", POLAR, 0.0), "design must be a Design"),
     (lambda: route.per_metre(ROVER, POLAR, "steep"), "slope_deg must be .*'steep'"),
     (lambda: route.cost(ROVER, "polar"), "scenario must be a Scenario"),
-    (lambda: on_site.rocks_per_m2(0.0, 0.1), "diameter_m must be positive"),
-    (lambda: on_site.rocks_per_m2(0.1, 1.5), "area_fraction must be at least 0 and at most 1"),
-    (lambda: on_site.detour_factor("x", 0.5, 0.1), "obstacle_m must be positive"),
-    (lambda: on_site.detour_factor(0.1, np.nan, 0.1), "width_m must be positive"),
+    (lambda: route.rocks_per_m2(0.0, 0.1), "diameter_m must be positive"),
+    (lambda: route.rocks_per_m2(0.1, 1.5), "area_fraction must be at least 0 and at most 1"),
+    (lambda: route.detour_factor("x", 0.5, 0.1), "obstacle_m must be positive"),
+    (lambda: route.detour_factor(0.1, np.nan, 0.1), "width_m must be positive"),
     (lambda: route.along("x", [[0, 0]]), "terrain must be a Terrain"),
     (lambda: route.along(level(), []), "cells must be rows"),
     (lambda: route.along(level(), [[0, 0], [6, 0]]), "cells must be rows and columns of the map"),
@@ -234,7 +233,7 @@ def test_routes_on_the_real_ridge():
 def test_the_tabulated_way_is_the_real_ridges():
     ridge, *wide = (terrain.read(SHARED / f"{name}.png") for name in ("connecting_ridge_10m", "connecting_ridge_20m",
                                                                       "south_pole_240m", "south_pole_480m"))
-    way = on_site.ridge()
+    way = route.ridge()
     for at, seen in list(zip(way.skyline_m, way.skylines))[::6]:
         point = np.argmin(abs(way.distance_m - at))
         x, y = ridge.to_xy(way.latitude_deg[point], way.longitude_deg[point])
@@ -280,7 +279,7 @@ def test_a_march_in_the_sun_by_hand():
 @pytest.mark.parametrize("start", ["2026-06-01", "2026-10-05", "2026-12-01"])
 def test_energy_is_accounted_for(start):
     design = replace(ROVER, battery_capacity_wh=200.0)
-    march = route.march(on_site.ridge(), design, replace(SUNNY, start_utc=start))
+    march = route.march(route.ridge(), design, replace(SUNNY, start_utc=start))
     solar, load, taken = books(march, design)
     full, empty = march.stored_wh >= 200 - 1e-9, march.stored_wh <= 30 + 1e-9
     between = ~full & ~empty
@@ -330,9 +329,9 @@ def test_lanes_march_as_they_do_alone():
     designs = rdk.random_designs(5, seed=4)
     delays = np.arange(5) * 300.0
     scenario = replace(SUNNY, duration_earth_days=4)
-    many = route.march(on_site.ridge(), designs, scenario, delay_h=delays)
+    many = route.march(route.ridge(), designs, scenario, delay_h=delays)
     for i in range(5):
-        one = route.march(on_site.ridge(), designs[i], scenario, delay_h=delays[i])
+        one = route.march(route.ridge(), designs[i], scenario, delay_h=delays[i])
         assert one.message == many.message[i] and one.arrival_h == many.arrival_h[i]
         shared = min(len(one.time_h), len(many.time_h))
         np.testing.assert_allclose(many.distance_m[:shared, i], one.distance_m[:shared], rtol=1e-9)
@@ -341,13 +340,13 @@ def test_lanes_march_as_they_do_alone():
 
 
 def test_the_step_of_time_does_not_decide():
-    coarse, fine = (route.march(on_site.ridge(), ROVER, SUNNY, follow_sun=True, step_h=step) for step in (0.25, 0.05))
+    coarse, fine = (route.march(route.ridge(), ROVER, SUNNY, follow_sun=True, step_h=step) for step in (0.25, 0.05))
     np.testing.assert_allclose(coarse.arrival_h, fine.arrival_h, atol=0.25)
     np.testing.assert_allclose(coarse.stored_wh[-1], fine.stored_wh[-1], atol=4.0)       # a quarter of an hour at 16 W
 
 
 def test_summer_and_winter_on_the_ridge():
-    summer, winter = (route.march(on_site.ridge(), ROVER, replace(SUNNY, start_utc=start), follow_sun=True)
+    summer, winter = (route.march(route.ridge(), ROVER, replace(SUNNY, start_utc=start), follow_sun=True)
                       for start in ("2026-12-01", "2026-06-01"))
     assert np.isfinite(summer.arrival_h) and winter.stranded_m < 1000 and "pack empty" in winter.message
 

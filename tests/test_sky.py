@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rdk
-from on_site import longest_run
 from rdk import catalog, explain, power, sky
 from rdk.sky import Skyline
 
@@ -44,7 +43,7 @@ def light(site, height_m):
 
 def figures(lit):
     return dict(lit_pct=100 * lit.mean(), dark_pct=100 * (lit <= 0).mean(),
-                longest_dark_days=longest_run(lit <= 0) / 24, longest_light_days=longest_run(lit > 0) / 24)
+                longest_dark_days=sky.longest_run(lit <= 0) / 24, longest_light_days=sky.longest_run(lit > 0) / 24)
 
 
 # ---- the sun -----------------------------------------------------------------------------------------------
@@ -155,7 +154,7 @@ def test_what_is_no_skyline_is_refused(wrong):
     (lambda: sky.sun_position(-85.0, None, HOURS[0]), "longitude_deg must be"),
     (lambda: sky.lit_fraction("high", 0.0), "elevation_deg must be numbers; got 'high'"),
     (lambda: sky.lit_fraction(1.0, {}, [1.0, 2.0]), "azimuth_deg must be numbers"),
-    (lambda: longest_run([[True, False]]), "flags must have one dimension")])
+    (lambda: sky.longest_run([[True, False]]), "flags must have one dimension")])
 def test_what_is_no_number_is_refused_by_name(call, words):
     with pytest.raises(ValueError, match=words):
         call()
@@ -235,8 +234,8 @@ def test_a_level_skyline_gives_the_papers_light():
 
 
 def test_longest_run():
-    assert longest_run([True, True, False, True], 2.0) == 4.0 and longest_run([False]) == 0
-    assert longest_run(np.ones(5)) == 5 and longest_run([]) == 0
+    assert sky.longest_run([True, True, False, True], 2.0) == 4.0 and sky.longest_run([False]) == 0
+    assert sky.longest_run(np.ones(5)) == 5 and sky.longest_run([]) == 0
 
 
 # ---- missions ----------------------------------------------------------------------------------------------

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import rdk
-from on_site import static_pressure_kpa
-from rdk.stability import axle_loads, stance, tip_over
+from rdk.stability import axle_loads, stance, static_pressure_kpa, tip_over
 
 RANDOM = np.random.default_rng(5)
 N = 400

@@ -9,8 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from drawings import hillshade
-from on_site import longest_run
 from rdk import catalog, sky, terrain
 from rdk.terrain import Terrain
 
@@ -96,8 +94,8 @@ def test_bad_maps_are_refused(change, words):
     (lambda g: g.to_xy(-80.0, None), "longitude_deg"), (lambda g: g.to_latlon(0.0, np.nan), "y must be finite"),
     (lambda g: g.cell("x", 0.0), "x must be"), (lambda g: g.cell(0.0, np.nan), "y must be"),
     (lambda g: g.place("x", 0), "row must be"), (lambda g: g.at(0.0, [[1, 2], [3]]), "y must be numbers"),
-    (lambda g: g.at({}, 0.0), "x must be numbers"), (lambda g: hillshade(g, "x"), "azimuth_deg must be"),
-    (lambda g: hillshade(g, 10.0, [1.0, 2.0]), "elevation_deg must be one number"),
+    (lambda g: g.at({}, 0.0), "x must be numbers"), (lambda g: g.hillshade("x"), "azimuth_deg must be"),
+    (lambda g: g.hillshade(10.0, [1.0, 2.0]), "elevation_deg must be one number"),
     (lambda g: g.skyline([0.0, 1.0], 0.0), "x must be one number"), (lambda g: g.skyline(0.0, 0.0, "x"), "height_m"),
     (lambda g: g.skyline(0.0, 0.0, farthest_m=[1e3, 2e3]), "farthest_m must be one number"),
     (lambda g: g.skyline(0.0, 0.0, beyond=["x"]), r"beyond\[0\] must be a Terrain; got 'x'"),
@@ -125,7 +123,7 @@ def test_slope_and_shade_of_a_plane(east, north):
     np.testing.assert_allclose(ground.slope(), np.degrees(np.arctan(np.hypot(east, north))), atol=1e-9)
     normal = np.array([-east, -north, 1]) / np.sqrt(1 + east**2 + north**2)
     sun = np.array([np.cos(0.3) * np.sin(2), np.cos(0.3) * np.cos(2), np.sin(0.3)])
-    np.testing.assert_allclose(hillshade(ground, *np.degrees([2, 0.3])), max(normal @ sun, 0), atol=1e-12)
+    np.testing.assert_allclose(ground.hillshade(*np.degrees([2, 0.3])), max(normal @ sun, 0), atol=1e-12)
 
 
 def test_slope_of_a_cone_is_the_same_all_round():
@@ -439,7 +437,7 @@ def test_light_on_the_real_ridge(maps):
             seen = maps[0].skyline(*maps[0].to_xy(*place), float(row["height_m"]), beyond=maps[1:])
             lit[place] = sky.lit_fraction(*sky.sun_position(*place, hours), seen)
         ours = dict(mean_lit=100 * lit[place].mean(), dark_time=100 * (lit[place] <= 0).mean(),
-                    longest_dark=longest_run(lit[place] <= 0) / 24)[row["quantity"]]
+                    longest_dark=sky.longest_run(lit[place] <= 0) / 24)[row["quantity"]]
         np.testing.assert_allclose(ours, float(row["value"]), atol=float(row["tolerance"]))
     assert len(rows) >= 10
 

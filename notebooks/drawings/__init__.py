@@ -17,7 +17,7 @@ from .rules import (  # noqa: F401
     VERDICTS, ledger_filter, ledger_html, ledger_text, ledger_verdicts, pull_intervals, rediscovery_distances,
     sobol_bars, variables_on_fronts, verdict)
 from .site import (  # noqa: F401
-    hillshade, line_of_sight, marches, polar_sun, shares_of_light, skyline_and_sun, slope_and_tilt, ways_on_a_map)
+    line_of_sight, marches, polar_sun, shares_of_light, skyline_and_sun, slope_and_tilt, ways_on_a_map)
 from .rovers import rovers  # noqa: F401
 from .stand import loads_on_slope, mass_intervals  # noqa: F401
 from .sizing import sizing_flow  # noqa: F401

@@ -1,7 +1,6 @@
 """Pictures of notebooks 14 and 15: the sun at the pole, skylines, maps and ways, and a march."""
 import numpy as np
 
-from rdk._fields import check
 from rdk.figures import BLACK, BLUE, COLOURS, DASHES, GREEN, GREY, MARKERS, ORANGE, panels
 
 
@@ -151,15 +150,6 @@ def slope_and_tilt():
     return figure
 
 
-def hillshade(terrain, azimuth_deg=315.0, elevation_deg=30.0):
-    """Brightness 0 to 1 of each cell, lit from an azimuth clockwise from the top of the map; no cast shadows."""
-    down, right = np.gradient(terrain.height_m, terrain.step_m)
-    azimuth, elevation = np.radians([check(name, angle, scalar=True) for name, angle in (
-        ("azimuth_deg", azimuth_deg), ("elevation_deg", elevation_deg))])
-    facing = np.sin(elevation) - np.cos(elevation) * (np.sin(azimuth) * right - np.cos(azimuth) * down)
-    return np.clip(facing / np.sqrt(1 + right**2 + down**2), 0, 1)
-
-
 def ways_on_a_map(figure, terrain, ways, start, goal, shut=None):
     """A shaded map with ways on it; hatched where the ground is shut.
 
@@ -174,7 +164,7 @@ def ways_on_a_map(figure, terrain, ways, start, goal, shut=None):
     shut : ndarray of bool, optional
     """
     ax = figure.add_axes((0.02, 0.05, 0.96, 0.85))
-    ax.imshow(hillshade(terrain), cmap="gray", vmin=0, vmax=1, interpolation="nearest")
+    ax.imshow(terrain.hillshade(), cmap="gray", vmin=0, vmax=1, interpolation="nearest")
     if shut is not None and shut.any():
         ax.contourf(shut, levels=[0.5, 1.5], colors="none", hatches=["////"])
         ax.contour(shut, levels=[0.5], colors=[BLACK], linewidths=0.6)

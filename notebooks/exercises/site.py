@@ -10,8 +10,6 @@ from scipy.optimize import brentq
 from rdk import catalog, power, route, sky
 from rdk.mission import evaluate
 
-from on_site import detour_factor, ridge
-
 from .judging import Exercise
 
 EXERCISES = {}
@@ -110,13 +108,13 @@ def _climb_wh(slope_deg=10.0, standing=False):
 
 
 def _rock_cover_pct(obstacle_m=0.05, longer=1.1):
-    return 100 * brentq(lambda k: detour_factor(obstacle_m, 0.5, k) - longer, 1e-4, 0.6)
+    return 100 * brentq(lambda k: route.detour_factor(obstacle_m, 0.5, k) - longer, 1e-4, 0.6)
 
 
 @cache
 def _least_battery_wh():
     packs = np.arange(300.0, 501.0, 10.0)
-    march = route.march(ridge(), catalog.rover("MoonRanger").replace(battery_capacity_wh=packs),
+    march = route.march(route.ridge(), catalog.rover("MoonRanger").replace(battery_capacity_wh=packs),
                         _slow().replace(start_utc="2026-03-15", duration_earth_days=30), follow_sun=True)
     lost = np.flatnonzero(np.isinf(march.arrival_h))
     return packs[lost[-1] + 1], packs[lost[-1]]
