@@ -2,6 +2,7 @@
 
 import os
 import re
+from urllib.parse import parse_qsl
 
 import pytest
 
@@ -12,7 +13,7 @@ from playwright.sync_api import expect  # noqa: E402
 
 import rdk  # noqa: E402
 from rdk import catalog  # noqa: E402
-from rdk.explorer.inputs import DESIGN, MISSION, NUMBERS, SOIL, VIEWS, from_text  # noqa: E402
+from rdk.explorer.inputs import DESIGN, MISSION, NUMBERS, SOIL, VIEWS  # noqa: E402
 
 if browser.CHROMIUM is None and os.environ.get("CI"):
     pytest.fail("no Chromium on CI", pytrace=False)
@@ -357,7 +358,7 @@ def test_a_random_walk_of_300_moves(explorer):
     view(explorer, "Mission log")
     explorer.page.wait_for_function("""() => location.search.slice(1) === JSON.parse(
         document.querySelector('[data-state]').dataset.state).t.share""")
-    state = from_text(explorer.page.evaluate("location.search"))
+    state = dict(parse_qsl(explorer.page.evaluate("location.search").lstrip("?")))
     values = {name: float(box(explorer,
                               name).evaluate("e => e.value === 'none' ? Infinity : e.value")) / NUMBERS[name].factor
               for name in (*DESIGN, *MISSION, *SOIL)}
@@ -365,7 +366,7 @@ def test_a_random_walk_of_300_moves(explorer):
     design = rdk.Design(wheel_count=wheels, **{name: values[name] for name in DESIGN})
     mission = rdk.Scenario(name="shown", soil=rdk.Soil(**{name: values[name] for name in SOIL}),
                            **{name: values[name] for name in MISSION})
-    coefficients = {name: state[name] for name in ("hub_no_load_speed_rad_s", "drivetrain_efficiency",
+    coefficients = {name: float(state[name]) for name in ("hub_no_load_speed_rad_s", "drivetrain_efficiency",
                                                    "panel_efficiency", "growth_fraction")
                     if name in state}
     base = rdk.Model.engineering() if state.get("preset") == "engineering" else rdk.Model()

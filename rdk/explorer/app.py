@@ -122,7 +122,8 @@ class Explorer(State):
 
     def _on_slide(self, name, position):
         if position != NUMBERS[name].position(self.state[name]):
-            self._move({name: NUMBERS[name].at(position)}, (name, self._heard))      # events count milliseconds
+            with self._step((name, self._heard)):        # events count milliseconds
+                self._assign(name, NUMBERS[name].at(position))
 
     def _on_type(self, name, text):
         value, said = NUMBERS[name].read(text) if name in NUMBERS else (text, "")
@@ -158,19 +159,18 @@ class Explorer(State):
 
     def _read(self, verb, name):
         """Title and HTML of what a button gives to read; "close" gives nothing."""
-        def shown(text, more=""):
-            return f"<pre tabindex='0'>{html.escape(text)}</pre>{more}"
+        def shown(text):
+            return f"<pre tabindex='0'>{html.escape(text)}</pre>"
 
         if verb == "save":
             data = base64.b64encode(self.file(name).encode()).decode()
             return "Saved", (f'<p><a data-deliver download="{name}" href="data:application/octet-stream;base64,{data}">'
                              f"{name}</a>: in the folder of your downloads.</p>")
         if verb == "python":
-            return (f"Python for {self.state['script']}",
-                    shown(self.python(), page.menu("script", "instead for", self.menus["script"])))
+            return "Python for what is shown", shown(self.python())
         if verb == "copied":
             what = "the address of this state" if self._app else "the state, for Explorer(state=...)"
-            return f"Copied: {what}", shown(self.link or "(as it starts)")
+            return f"Copied: {what}", shown(self.link)
         return ("Differences", self._differences()) if verb == "differences" else ("", "")
 
     def _repr_mimebundle_(self, **kwargs):
@@ -277,21 +277,19 @@ class Explorer(State):
     def _tell(self, heard, busy=False):
         """Send the values of all inputs and the small texts to the page; `heard` is the last event that is answered."""
         with self._lock:
-            now, base, m, running = self.state, self._values(*self._base), self.scenario, self._thread
-            numbers = {}
-            for name, f in NUMBERS.items():
-                first = base.get(name, now[name])
-                numbers[name] = (f.position(now[name]), f.words(now[name]), 100 * f.position(first) / f.positions,
-                                 int(now[name] != first))
+            now, m, running = self.state, self.scenario, self._thread is not None
+            base = now | self._values(*self._base)
+            numbers = {name: (f.position(now[name]), f.words(now[name]), 100 * f.position(base[name]) / f.positions,
+                              int(now[name] != base[name])) for name, f in NUMBERS.items()}
             route = "no limit" if math.isinf(m.traverse_limit_km) else f"{m.traverse_limit_km:g} km"
             texts = {"mission": f"Mission: {place(m.latitude_deg)}, {m.slope_deg:g}°", "status": self._status,
                      "share": self.link, "summary": f"{place(m.latitude_deg)}, {m.duration_earth_days:g} days from "
                      f"{m.start_utc or 'sunrise'}, {m.slope_deg:g}° in {m.soil.name}; drives {100 * m.duty_cycle:g} % "
                      f"of the time, route {route}."}
             told = {"ack": heard, "v": numbers, "c": {name: str(now[name]) for name in (*self.menus, "start_utc")},
-                    "t": texts, "off": {"undo": not self._past, "redo": not self._future, "run": bool(running),
-                                        "lightest": bool(running), "cancel": not running},
-                    "p": (*self._progress, bool(running)), "busy": busy}
+                    "t": texts, "p": (*self._progress, running), "busy": busy,
+                    "off": {"undo": not self._past, "redo": not self._future, "run": running, "lightest": running,
+                            "cancel": not running}}
             if self._reading in ("python", "differences"):           # they follow the state
                 self._drawer = self._read(self._reading, "")
             (role, notice), drawer = self._notice, self._drawer
@@ -301,15 +299,11 @@ class Explorer(State):
 
     # ---- fronts and solutions ---------------------------------------------------------------------------------
 
-    def _problem(self):
-        """What `pareto_front` needs for the search that the inputs pose."""
-        posed = self.scenario.problem
-        return {name: self.state[name] for name in ("population", "generations", "seed")} | {
-            "objectives": dict(posed.objectives), "constraints": list(posed.constraints)}
-
     def optimise(self, wait=False):
         """Search in the background for the mission as it stands; with `wait`, return when the search has ended."""
-        problem = self._problem()
+        posed = self.scenario.problem
+        problem = {name: self.state[name] for name in ("population", "generations", "seed")} | {
+            "objectives": dict(posed.objectives), "constraints": list(posed.constraints)}
 
         def take(front):
             self.front = front

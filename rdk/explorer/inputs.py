@@ -1,11 +1,9 @@
-"""The explorer's inputs: their table, what people type into them, the state as a short text."""
+"""The explorer's inputs: their table, their menus, what people type into them."""
 from __future__ import annotations
 
-import contextlib
 import math
 import re
 from typing import NamedTuple
-from urllib.parse import parse_qsl
 
 import numpy as np
 
@@ -34,7 +32,7 @@ class Field(NamedTuple):
         """The Field of a row; a design variable has the span of the design space."""
         name, unit, factor, words = row["name"], row["unit"], float(row["factor"]), row["help"]
         if name in DESIGN_SPACE:
-            low, high = DESIGN_SPACE[name].low, DESIGN_SPACE[name].high
+            low, high, *_ = DESIGN_SPACE[name]
             known = [getattr(catalog.rover(rover), name) * factor for rover in catalog.rover_names()]
             words += f" Published rovers: {min(known):g} to {max(known):g} {unit}".rstrip() + "."
         else:
@@ -91,13 +89,12 @@ class Field(NamedTuple):
 
 _ROWS = catalog.rows("explorer_inputs.csv")
 NUMBERS = {row["name"]: Field.of(row) for row in _ROWS}
-DESIGN, COEFFICIENTS, MISSION, SOIL, SEARCH = (
+DESIGN, COEFFICIENTS, MISSION, SOIL = (
     {row["name"]: NUMBERS[row["name"]] for row in _ROWS if row["group"] == group}
-    for group in ("design", "model", "mission", "soil", "search"))
-DEMANDS = {name: (metric, sign, NUMBERS.get(name)) for name, metric, sign in (
-    ("minimum_range_km", "range_km", ">="), ("minimum_slope_deg", "slope_capability_deg", ">="),
-    ("maximum_mass_kg", "total_mass_kg", "<="), ("minimum_charge", "minimum_soc", ">="),
-    ("survive", "thermal_survival", ">="))}
+    for group in ("design", "model", "mission", "soil"))
+DEMANDS = {"minimum_range_km": ("range_km", ">="), "minimum_slope_deg": ("slope_capability_deg", ">="),
+           "maximum_mass_kg": ("total_mass_kg", "<="), "minimum_charge": ("minimum_soc", ">="),
+           "survive": ("thermal_survival", ">=")}
 GOALS = {"range_goal": "range_km", "mass_goal": "total_mass_kg", "slope_goal": "slope_capability_deg"}
 METRICS = {"range_km": 2, "total_mass_kg": 2, "slope_capability_deg": 1, "energy_balance_pct": 0,
            "cold_temperature_c": 0, "hot_temperature_c": 0, "wheel_torque_nm": 2, "slip": 2, "sinkage_m": 4,
@@ -106,7 +103,6 @@ VIEWS = {"log": "Mission log", "mass": "Mass", "wheel": "Wheel", "fleet": "Fleet
          "optimise": "Optimise"}
 OWN, START, NONE, ODDS = "your own", "the design at the start", "none", "odds"
 SKY = "site", "site_height_m", "start_utc"
-SCRIPTS = ("the readings", "why", "the sweep", "the front")
 
 
 def title(name):
@@ -141,7 +137,7 @@ def choices():
             "front_x": metrics, "front_y": metrics, "front_colour": metrics | {ODDS: label(ODDS)[0]},
             "live": {False: "off", True: "on"},
             "solve_variable": {name: field.label for name, field in DESIGN.items()},
-            **dict.fromkeys(GOALS, same("max", "min", "ignore")), "script": same(*SCRIPTS)}
+            **dict.fromkeys(GOALS, same("max", "min", "ignore"))}
 
 
 def label(name):
@@ -168,13 +164,3 @@ def check(name, value, menus):
     field = NUMBERS[name]
     return _fields.check(name, value, field.low, math.inf if field.endless else field.high, whole=field.whole,
                          infinite=field.endless, scalar=True)
-
-
-def from_text(text):
-    """Names and values of a link's query, unchecked; numbers are read where the input is one."""
-    found = {}
-    for name, value in parse_qsl(text.strip().lstrip("?")):
-        with contextlib.suppress(ValueError):            # `check` will say what it should have been
-            value = float(value) if name in NUMBERS else value
-        found[name] = value
-    return found

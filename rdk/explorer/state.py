@@ -5,7 +5,7 @@ import contextlib
 import functools
 import math
 import threading
-from urllib.parse import urlencode
+from urllib.parse import parse_qsl, urlencode
 
 import numpy as np
 
@@ -16,16 +16,15 @@ from ..report import report
 from ..sampling import replaced, single
 from ..tradespace import Front
 from . import answers
-from .inputs import (COEFFICIENTS, DEMANDS, DESIGN, GOALS, MISSION, NONE, NUMBERS, OWN, SKY, SOIL, START, check,
-                     choices, from_text, title)
+from .inputs import COEFFICIENTS, DEMANDS, DESIGN, GOALS, NONE, NUMBERS, OWN, SKY, START, check, choices, title
 
 PINS = ("A", "c1", "#c04a00"), ("B", "c2", "#007a59"), ("C", "c3", "#6a7488")
 PAST = 200                                               # states that undo remembers
 FIRST = "rover", "mission", "preset", "site"             # of a link: the values come after the names
 CHOSEN = {"view": "log", "baseline": "MoonRanger", "why_metric": "range_km", "sweep_first": "wheel_radius_m",
           "sweep_second": "", "sweep_metric": "range_km", "front_x": "total_mass_kg", "front_y": "slope_capability_deg",
-          "front_colour": "range_km", "live": False, "solve_variable": "wheel_radius_m", "script": "the readings",
-          "population": 50, "generations": 60, "seed": 13, "site_height_m": 2}
+          "front_colour": "range_km", "live": False, "solve_variable": "wheel_radius_m", "population": 50,
+          "generations": 60, "seed": 13, "site_height_m": 2}
 ENGINEERING = Model.engineering()
 skyline = functools.cache(catalog.skyline)
 
@@ -64,11 +63,10 @@ class State:
         limits = {(metric, sign): limit for metric, sign, limit in mission.problem.constraints}
         site, height = self._site(mission)
         coefficients = {name: getattr(model, name) for name in COEFFICIENTS}
-        return {**{name: getattr(design, name) for name in (*DESIGN, "wheel_count")}, **coefficients,
-                **{name: getattr(mission, name) for name in MISSION},
-                **{name: getattr(mission.soil, name) for name in SOIL},
+        numbers = {**design.numbers(), **mission.numbers(), **mission.soil.numbers(), **coefficients}
+        return {**{name: numbers[name] for name in ("wheel_count", *NUMBERS) if name in numbers},
                 **{name: limits.get((metric, sign), 0 if sign == ">=" else math.inf)
-                   for name, (metric, sign, _) in DEMANDS.items()},
+                   for name, (metric, sign) in DEMANDS.items()},
                 **{goal: mission.problem.objectives.get(metric, "ignore") for goal, metric in GOALS.items()},
                 "survive": int(limits.get(("thermal_survival", ">="), 0)),
                 "rover": self._known.get(design, OWN),
@@ -81,21 +79,21 @@ class State:
         """Name and height of the site whose skyline a mission has."""
         if mission.skyline is None:
             return NONE, None
-        site, height = explain.site_of(mission.skyline) or (OWN, None)
-        return (site, height) if mission.longitude_deg == mission.skyline.longitude_deg else (OWN, None)
+        if mission.longitude_deg != mission.skyline.longitude_deg:
+            return OWN, None
+        return explain.site_of(mission.skyline) or (OWN, None)
 
     @property
     def link(self):
         """The state as a short text: the query of the app's address, and what `Explorer(state=...)` takes."""
-        now = self.state
-        mission = self._catalogue.get(now["mission"], self._catalogue["equatorial_mare_traverse"])
-        base = self._values(self._rovers.get(now["rover"], self._start), mission, Model()) | {
-            "rover": "", "mission": "", "view": "log", "population": 50, "generations": 60,
-            "seed": mission.problem.seed or CHOSEN["seed"], "soil": now["soil"]}
-        own = (*DESIGN, "wheel_count") * (now["rover"] == OWN) + (
-            *MISSION, *SKY, *SOIL, *DEMANDS, *GOALS, "seed") * (now["mission"] == OWN)
-        base |= dict.fromkeys(own)                       # what has no name is carried whole
-        return urlencode({name: now[name] for name in base if now[name] != base[name]})
+        (design, mission, _), names = self._base, self._values(*self._base)
+        if names["rover"] == OWN:                        # what has no name is told by what it differs in
+            design = self._rovers["Rashid-1"]
+        if names["mission"] == OWN:
+            mission = self._catalogue["equatorial_mare_traverse"]
+        base = CHOSEN | self._values(design, mission, Model()) | {"seed": mission.problem.seed or CHOSEN["seed"]}
+        told = {name: base[name] for name in ("rover", "mission")}
+        return urlencode(told | {name: now for name, now in self.state.items() if now not in (base[name], OWN)})
 
     @contextlib.contextmanager
     def _step(self, drag=("", 0)):
@@ -114,11 +112,8 @@ class State:
 
     def set(self, **values):
         """Set inputs by name, such as `slope_deg=20, soil="fjs-1", view="why"`; a ValueError says what is allowed."""
-        self._move(values)
-
-    def _move(self, values, drag=("", 0)):
         checked = {name: check(name, value, self.menus) for name, value in values.items()}
-        with self._step(drag):
+        with self._step():
             for name, value in checked.items():
                 self._assign(name, value)
 
@@ -187,8 +182,8 @@ class State:
         elif name == "preset":
             self._now = design, mission, Model() if value == "paper" else ENGINEERING
         elif name in DEMANDS:
-            kept = {(metric, sign): limit for metric, sign, limit in problem.constraints} | {DEMANDS[name][:2]: value}
-            names = dict.fromkeys([*(demand[:2] for demand in DEMANDS.values()), *kept])     # always in one order
+            kept = {(metric, sign): limit for metric, sign, limit in problem.constraints} | {DEMANDS[name]: value}
+            names = dict.fromkeys([*DEMANDS.values(), *kept])                # always in one order
             kept = tuple((*key, kept[key]) for key in names if kept.get(key, 0) not in (0, math.inf))
             self._show_mission(problem=problem.replace(constraints=kept))
         elif name in GOALS:
@@ -200,14 +195,13 @@ class State:
             self._show_mission(soil=self._soils[value])
         elif name == "start_utc":
             self._show_mission(start_utc=None if value == NONE else value)
-        elif name in SKY and (value if name == "site" else here) == NONE:
-            self._show_mission(skyline=None)
         elif name in SKY:
             site = value if name == "site" else here
             self._show_mission(skyline=None)
-            self._assign("latitude_deg", sites[site]["latitude_deg"])
-            self._show_mission(skyline=skyline(site, self._chosen["site_height_m"]),
-                               longitude_deg=sites[site]["longitude_deg"])
+            if site != NONE:
+                self._assign("latitude_deg", sites[site]["latitude_deg"])
+                self._show_mission(skyline=skyline(site, self._chosen["site_height_m"]),
+                                   longitude_deg=sites[site]["longitude_deg"])
         else:
             noon = 0.0 if mission.latitude_deg < 0 else 180.0
             if name == "latitude_deg" and mission.panel_azimuth_deg == noon:
@@ -228,17 +222,16 @@ class State:
 
     def _put(self, design=None, mission=None, note=""):
         """Show a design, a mission or both, and make them the base; the notice says what the sliders could not take."""
-        said, names = [note] if note else [], (*DESIGN,) if design else ()
+        said = [note] if note else []
         if mission is not None:
-            names += (*MISSION, *SOIL, *DEMANDS)
             self._named = {known.replace(name=OWN): known for known in (
                 *self._soils.values(), *self._catalogue.values(), mission.soil, mission)}
-            self._chosen["seed"] = self._chosen["seed"] if mission.problem.seed is None else mission.problem.seed
+            self._chosen["seed"] = CHOSEN["seed"] if mission.problem.seed is None else mission.problem.seed
         self._now = design or self.design, mission or self.scenario, self.model
-        values = self._values(*self._now)
-        for name in names:
-            near, word = NUMBERS[name].cut(values[name]) if name in NUMBERS else (None, "")
-            if word:
+        values = self.state
+        for name, field in NUMBERS.items():
+            near, word = field.cut(values[name])
+            if word and name not in COEFFICIENTS:
                 self._assign(name, near)
                 said.append(word)
         self._base = self.design if design else self._base[0], *(self._now if mission else self._base)[1:]
@@ -246,14 +239,15 @@ class State:
 
     def _restore_link(self, text):
         """Lay the state of a link over the present one; what is wrong in it is said, the rest taken."""
-        wrong, found = [], from_text(text)
+        found, wrong = dict(parse_qsl(text.strip().lstrip("?"))), []
         with self._step():
-            for name in sorted(found, key=lambda n: FIRST.index(n) if n in FIRST else len(FIRST)):
-                if name in NUMBERS or name in self.menus or name in SKY:
+            for name in dict.fromkeys([*FIRST, *found]):
+                if name in found and (name in NUMBERS or name in self.menus or name in SKY):
                     try:
-                        self._assign(name, check(name, found[name], self.menus))
+                        value = float(found[name]) if name in NUMBERS else found[name]
+                        self._assign(name, check(name, value, self.menus))
                     except ValueError as error:
-                        wrong.append(str(error))
+                        wrong.append(f"{name}={found[name]}: {error}")
             self._notice = ("alert" if wrong else "status", "; ".join(wrong))
 
     # ---- files ------------------------------------------------------------------------------------------------
@@ -277,13 +271,12 @@ class State:
             raise ValueError(f"no file {name!r}; choose from {', '.join(made)}")
         return made[name]()
 
-    def load(self, name, content):
-        """Show a design, or a front, from a file's name and its text or bytes; a notice says what was wrong with it."""
+    def load(self, name, text):
+        """Show a design, or a front, from a file's name and text; a notice says what was wrong with it."""
         try:
-            text = content if isinstance(content, str) else bytes(content).decode("utf-8-sig")
-            text, table = text.removeprefix("\ufeff"), name.lower().endswith(".csv")
+            table = name.lower().endswith(".csv")
             design, mission = (catalog.from_csv(text), None) if table else catalog.from_json(text)
-        except ValueError as error:                      # also where the bytes are no text
+        except ValueError as error:
             self._notice = ("alert", f"{name} was not loaded: {error}")
             return self._poke()
         note = f"{name} loaded"
@@ -303,20 +296,17 @@ class State:
         return self._start if self._chosen["baseline"] == START else self._rovers[self._chosen["baseline"]]
 
     def python(self):
-        """The Python that reproduces what the menu `script` names, as it stands on the screen."""
-        wanted, more, (design, scenario, model) = self._chosen["script"], {}, self._now
+        """The Python that reproduces the readings and what the view shows of them."""
+        (design, scenario, model), view, more = self._now, self._chosen["view"], {}
         calls = ["result = rdk.evaluate(design, mission, model=model)",
                  f"intervals = rdk.intervals(design, mission, draws={answers.DRAWS}, model=model)"]
-        if wanted == "the front":
-            if self.front is None or self._recipe is None:
-                return "# No front of a finished search: choose the view Optimise and press Run search.\n"
-            recipe = ", ".join(f"{name}={value!r}" for name, value in self._recipe.items())
-            scenario, model = self.front.scenario, self.front.model
-            calls = [f"front = rdk.pareto_front(mission, {recipe}, model=model)"]
-        elif wanted == "why":
+        if view == "why":
             more = {"baseline": self._reference()}
-            calls = ["why = rdk.attribution(design, baseline, mission, model=model)"]
-        elif wanted == "the sweep":
+            calls.append("why = rdk.attribution(design, baseline, mission, model=model)")
+        elif view == "sweep":
             over = {name: values.tolist() for name, values in answers.swept_over(self._chosen).items()}
-            calls = [f"curve = rdk.sweep(design, mission, {over!r}, model=model)"]
+            calls.append(f"curve = rdk.sweep(design, mission, {over!r}, model=model)")
+        elif view == "optimise" and self._recipe is not None and answers.fits(self.front, scenario, model):
+            recipe = ", ".join(f"{name}={value!r}" for name, value in self._recipe.items())
+            calls.append(f"front = rdk.pareto_front(mission, {recipe}, model=model)")
         return explain.as_python(design, scenario, model, *calls, **more)

@@ -1,48 +1,40 @@
 """A worker thread that answers for the newest state only."""
 from __future__ import annotations
 
-import threading
+import contextlib
+from concurrent.futures import ThreadPoolExecutor
 
 
 class Refresher:
-    """Runs `work` in a thread when poked; pokes during a run, from any thread, lead to one more; keeps its `error`.
+    """Runs `work` in a thread when poked; pokes during a run, from any thread, lead to one more.
 
     Pokes by one that holds `lock` are one.
     """
 
-    def __init__(self, work, lock=None):
-        self._work, self._state, self._lock, self.error = work, threading.Condition(), lock or threading.Lock(), None
-        self._wanted = self._done = self._target = 0
+    def __init__(self, work, lock):
+        self._work, self._lock = work, lock
+        self._pool = ThreadPoolExecutor(1)               # awaited at exit: a daemon in compiled code would abort
+        self._wanted = self._target = self._last = None
 
     def poke(self):
         """Ask for a run with the state as it is now."""
-        with self._state:
-            self._wanted += 1
-            if self._wanted == self._done + 1:           # no thread is at work
-                threading.Thread(target=self._loop).start()      # no daemon: one in compiled code at exit aborts
+        with self._lock, contextlib.suppress(RuntimeError):                  # the program may be ending
+            self._wanted = object()
+            self._last = self._pool.submit(self._run)
 
     @property
     def overtaken(self):
         """A newer state waits while a run is under way."""
-        return self._wanted != self._target
+        return self._wanted is not self._target
 
-    def _loop(self):
-        more = True
-        while more:
-            with self._lock:
-                self._target, self.error = self._wanted, None
-            try:
-                self._work()
-            except Exception as error:                   # whatever it is, the next poke must find a worker
-                self.error = error
-            with self._state:
-                self._done, more = self._target, self._target < self._wanted
-                self._state.notify_all()
+    def _run(self):
+        with self._lock:
+            answered = not self.overtaken
+            self._target = self._wanted
+        if not answered:
+            self._work()
 
     def settle(self, timeout_s=60):
         """Wait until nothing is left to do; a TimeoutError after `timeout_s`, or what the last run raised."""
-        with self._state:
-            if not self._state.wait_for(lambda: self._done == self._wanted, timeout_s):
-                raise TimeoutError(f"the explorer did not settle within {timeout_s} s")
-        if self.error is not None:
-            raise self.error
+        if self._last is not None:
+            self._last.result(timeout_s)
