@@ -22,7 +22,6 @@ from rdk.design import Problem
 from rdk.explorer import Explorer, answers, page
 from rdk.explorer import app as explorer_module
 from rdk.explorer.inputs import DESIGN, METRICS, MISSION, NUMBERS, OWN, SOIL, VIEWS
-from rdk.explorer.worker import Refresher
 from rdk.rover_picture import contact, failing, rover_picture, wheel_picture
 from rdk.sampling import Attribution
 
@@ -260,7 +259,6 @@ def test_events_that_were_heard_are_not_acted_on_again(explorer):
     explorer.bridge.value = json.dumps([[heard, "do", "undo"], [heard + 1, "type", "wheel_width_m", "90"]])
     explorer.settle()
     assert (explorer.design.wheel_radius_m, explorer.design.wheel_width_m) == (0.12, 0.09)
-    explorer.bridge.value = "not json"
     events(explorer, ["size", 390, 320])
     assert 'width="390"' in explorer._picture
     events(explorer, ["size", 600, 380])
@@ -508,7 +506,7 @@ def test_status_follows_requirement_and_interval(explorer):
         explorer.settle()
         cards = re.findall(r'class="rdk-card rdk-(\w+)"><div class="h"><span>(\w+)', explorer.parts["verdict"].value)
         assert ("Mass", status) in [(title, found) for found, title in cards]
-    share = np.mean(answers.meets(explorer.intervals.draws, explorer.scenario.problem.constraints))
+    share = np.mean(answers.meets(explorer.intervals.draws, answers.asked(explorer.scenario)))
     assert f"Drives in {100 * share:.0f} % of {answers.DRAWS:,} draws" in shown(explorer)
 
 
@@ -599,48 +597,27 @@ def test_an_error_becomes_words_and_goes_away(explorer, monkeypatch):
 
 # ---- one answer for the newest state --------------------------------------------------------------------------
 
-def test_refresher_answers_a_burst_with_the_newest_state():
-    seen, begun, go, state = [], threading.Event(), threading.Event(), [0]
+def test_a_burst_is_answered_once_and_with_the_newest_state(explorer, monkeypatch):
+    seen, begun, go, evaluate = [], threading.Event(), threading.Event(), explorer_module.evaluate
 
-    def work():
-        seen.append((state[0], refresher.overtaken))
+    def slow(design, *given, **more):
+        seen.append((design.wheel_radius_m, explorer._overtaken))
         begun.set()
-        assert go.wait(10)
-        seen.append(refresher.overtaken)
+        assert go.wait(60)
+        return evaluate(design, *given, **more)
 
-    refresher = Refresher(work, threading.Lock())
-    refresher.poke()
-    assert begun.wait(10)
-    for i in range(1, 51):
-        state[0] = i
-        refresher.poke()
+    monkeypatch.setattr(explorer_module, "evaluate", slow)
+    explorer.set(wheel_radius_m=0.06)
+    assert begun.wait(60)
+    for i in range(50):
+        explorer.set(wheel_radius_m=0.07 + 0.001 * i)
+    assert explorer._overtaken
     with pytest.raises(TimeoutError):
-        refresher.settle(0.01)
+        explorer.settle(0.01)
     go.set()
-    refresher.settle(10)
-    assert seen == [(0, False), True, (50, False), False]
-    refresher.settle(0)                                  # nothing to do
-
-
-def test_refresher_survives_an_error_and_loses_no_poke_from_many_threads():
-    runs = []
-
-    def work():
-        runs.append(1)
-        if len(runs) == 1:
-            raise KeyError("lost")
-
-    refresher = Refresher(work, threading.Lock())
-    refresher.poke()
-    with pytest.raises(KeyError, match="lost"):
-        refresher.settle(10)
-    threads = [threading.Thread(target=lambda: [refresher.poke() for _ in range(200)]) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    refresher.settle(10)
-    assert 2 <= len(runs) <= 801 and not refresher.overtaken
+    assert_current(explorer)
+    assert seen == [(0.06, False), (0.07 + 0.001 * 49, False)]
+    explorer.settle(0)                                   # nothing to do
 
 
 @pytest.mark.parametrize("view", ["log", "sweep", "why"])
@@ -650,7 +627,7 @@ def test_a_burst_leaves_nothing_stale(explorer, view):
         explorer.set(wheel_radius_m=0.06 + 0.005 * i, slope_deg=i)
     assert_current(explorer)
     picture = explorer.parts["picture"].value
-    explorer._refresher.poke()
+    explorer._poke()
     explorer.settle()
     assert explorer.parts["picture"].value == picture    # the picture, too, is that of the state shown
 
@@ -824,7 +801,7 @@ def test_a_front_is_coloured_by_the_odds_of_the_demands(explorer, monkeypatch):
     demands = [("feasible", ">=", 1), *explorer.scenario.problem.constraints]
     wanted = [rdk.intervals(design, rdk.scenario(POLAR), draws=answers.DRAWS).share(demands)
               for design in front.designs]
-    np.testing.assert_array_equal(explorer._odds[1], wanted)                 # the same draws for every design
+    np.testing.assert_array_equal(explorer._kept["odds"][1], wanted)                 # the same draws for every design
     assert len(set(wanted)) > 2
     said = re.findall(r'data-do="point:\d+" aria-label="([^"]*)"', explorer._picture)
     assert [f"odds of the demands {share:.4g}" in words for share, words in zip(wanted, said)] == [True] * len(front)
@@ -836,7 +813,7 @@ def test_a_front_is_coloured_by_the_odds_of_the_demands(explorer, monkeypatch):
     explorer.set(maximum_mass_kg=float(np.median(front.performance.total_mass_kg)))
     explorer.settle()
     assert sum(shape[0] for shape in calls if shape) == len(front)
-    assert np.flatnonzero(explorer._odds[1] > 0.9).size < len(front)
+    assert np.flatnonzero(explorer._kept["odds"][1] > 0.9).size < len(front)
 
 
 def test_cancel_ends_the_search_and_keeps_what_it_found(explorer, monkeypatch):
@@ -928,11 +905,11 @@ def test_the_live_front_follows_the_mission(explorer):
 def test_solve_finds_the_nearest_value_that_meets_the_demands(explorer):
     explorer.set(mission=POLAR, peak_wheel_torque_nm=0.1)
     explorer.settle()
-    assert not answers.meets(explorer.result, explorer.scenario.problem.constraints)
+    assert not answers.meets(explorer.result, answers.asked(explorer.scenario))
     explorer.solve("peak_wheel_torque_nm")
     assert_current(explorer)
-    assert answers.meets(explorer.result,
-                         explorer.scenario.problem.constraints) and "meets the demands" in shown(explorer, "drawer")
+    assert answers.meets(explorer.result, answers.asked(explorer.scenario))
+    assert "meets the demands" in shown(explorer, "drawer")
     weaker = dataclasses.replace(explorer.design, peak_wheel_torque_nm=0.96 * explorer.design.peak_wheel_torque_nm)
     assert not rdk.evaluate(weaker, explorer.scenario).feasible              # two steps of the search further down
     explorer.set(maximum_mass_kg=2.0)

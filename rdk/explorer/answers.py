@@ -1,6 +1,4 @@
 """What the explorer shows of one state: readings, the verdict, pictures and words. Functions of records, no widgets."""
-from __future__ import annotations
-
 from collections import namedtuple
 
 import numpy as np
@@ -16,10 +14,10 @@ from .page import card, verdict
 
 BAND_DRAWS, CURVE, MAP = 256, 61, 25                     # of the readings' draws the first; points of a sweep
 Answer = namedtuple("Answer", "now design scenario model result binding levers before ghosts reference spans sure "
-                    "front odds band kept", defaults=(False, None, (None, None), (None, None), None))
+                    "front kept")
 """What the page shows of one state: inputs `now`, the result `before` the last change, `ghosts` as (letter, class,
-result) of pinned designs, the `reference` of "why"; `spans` are intervals, older ones unless `sure`, and `odds` and
-`band` are pairs whose first part says what they are of; `kept` is what the last picture has left for the next one."""
+result) of pinned designs, the `reference` of "why"; `spans` are intervals, older ones unless `sure`. Earlier answers
+have `kept` the mixtures of "why", and as pairs of what they are of and of their values "odds" and "band"."""
 
 
 def words(value, digits, unit="", sign=""):
@@ -29,14 +27,14 @@ def words(value, digits, unit="", sign=""):
     return f"{round(float(value), digits) + 0.0:{sign}.{digits}f} {unit}".rstrip().replace("-", "−")     # no minus 0
 
 
-def asked(constraints):
-    """The demands of a problem; that the rover drives comes first."""
-    return [("feasible", ">=", 1), *constraints]
+def asked(scenario):
+    """The demands of a mission; that the rover drives it comes first."""
+    return [("feasible", ">=", 1), *scenario.problem.constraints]
 
 
-def meets(performance, constraints):
-    """Whether a design, or each of a population, drives and meets every demand."""
-    return np.all([holds(performance, demand) for demand in asked(constraints)], axis=0)
+def meets(performance, demands):
+    """Whether a design, or each of a population, meets every demand."""
+    return np.all([holds(performance, demand) for demand in demands], axis=0)
 
 
 def fits(front, scenario, model):
@@ -50,24 +48,23 @@ def fits(front, scenario, model):
 def cards(a):
     """The five readings."""
     result, spans, drawn = a.result, a.spans, []
-    wanted = {(metric, sign): limit for metric, sign, limit in a.scenario.problem.constraints}
-    route, far = a.scenario.traverse_limit_km, wanted.get(("range_km", ">="), 0.0)
-    heaviest = wanted.get(("total_mass_kg", "<="))
-    slope = max(a.scenario.slope_deg, wanted.get(("slope_capability_deg", ">="), 0.0))
+    far, route, heaviest = (a.now[name] for name in ("minimum_range_km", "traverse_limit_km", "maximum_mass_kg"))
+    slope = max(a.scenario.slope_deg, a.now["minimum_slope_deg"])
     steep = slope > a.scenario.slope_deg and result.slope_capability_deg < slope
     low, high = a.model.operating_temperature_min_c, a.model.operating_temperature_max_c
     rows = (  # field, title, digits, requirement, its sign, words; whether it is met where the value does not say
         ("range_km", "Range", 1, far, ">=", f"asked: {far:g} km") if far > 0.1 else
         ("range_km", "Range", 1, route, ">=", f"route of {route:g} km", "none" if result.range_km > 0 else False)
-        if np.isfinite(route) else ("range_km", "Range", 1, None, ">=", "no end of the route", "none"),
-        ("total_mass_kg", "Mass", 1, heaviest, "<=", f"at most {heaviest:.3g} kg") if heaviest else
-        ("total_mass_kg", "Mass", 1, None, "<=", "with payload", "none"),
+        if np.isfinite(route) else ("range_km", "Range", 1, route, ">=", "no end of the route", "none"),
+        ("total_mass_kg", "Mass", 1, heaviest, "<=", f"at most {heaviest:.3g} kg") if np.isfinite(heaviest) else
+        ("total_mass_kg", "Mass", 1, heaviest, "<=", "with payload", "none"),
         ("slope_capability_deg", "Slope", 1, slope, ">=", f"needs {slope:g}°", not (result.stalled or steep)),
         ("energy_balance_pct", "Energy", 0, 0.0, ">=", "needs 0 % or more"),
         ("cold_temperature_c", "Night", 0, low, ">=", f"noon {result.hot_temperature_c:.0f} °C; allowed {low:g} to "
          f"{high:g}".replace("-", "−"), bool(result.thermal_survival)))
     for name, title, digits, need, sign, note, *met in rows:
-        value, span = float(getattr(result, name)), spans and (float(spans.low[name]), float(spans.high[name]))
+        value = float(getattr(result, name))
+        span = () if spans is None else (float(spans.low[name]), float(spans.high[name]))
         met = met[0] if met else bool(holds(result, (name, sign, need)))
         risky = met is True and span and (span[0] < need if sign == ">=" else span[1] > need)
         status = "none" if met == "none" else "risk" if risky else "met" if met else "missed"
@@ -105,7 +102,7 @@ def answer(a):
     shown, table = cards(a), readings(a)
     odds = ""
     if a.spans is not None:
-        share = 100 * float(a.spans.share(asked(a.scenario.problem.constraints)))
+        share = 100 * float(a.spans.share(asked(a.scenario)))
         more = any((metric, limit) != ("range_km", 0.1) for metric, _, limit in a.scenario.problem.constraints)
         odds = f"{'Meets all demands' if more else 'Drives'} in {share:.0f} % of {DRAWS:,} draws."
     buttons = [(f"lever:{field}", f"{name} +10 %: {gain:+.2g} {unit}") for field, name, gain, unit in a.levers[:3]
@@ -117,12 +114,10 @@ def answer(a):
     return verdict(status, sentence, head, buttons, odds, shown, table, not a.sure), table
 
 
-def against(a, pins):
-    """The pinned designs for the tray: letter, name, what each has more or less than the present one."""
-    return [(letter, name, " · ".join(
-        words(getattr(other, metric) - getattr(a.result, metric), 1, label(metric)[1], "+")
-        for metric in ("total_mass_kg", "range_km", "slope_capability_deg")))
-        for (letter, _, other), (name, _) in zip(a.ghosts, pins)]
+def against(a):
+    """What each pinned design has more or less than the present one."""
+    return [" · ".join(words(getattr(other, metric) - getattr(a.result, metric), 1, label(metric)[1], "+")
+                       for metric in ("total_mass_kg", "range_km", "slope_capability_deg")) for *_, other in a.ghosts]
 
 
 # ---- pictures: each of an Answer and a size -------------------------------------------------------------------
@@ -143,7 +138,7 @@ def why(a, size):
     """What each variable contributes to the difference from a reference."""
     metric = a.now["why_metric"]
     found = a.kept["why"] = attribution(a.design, a.reference, a.scenario, model=a.model, metrics=(metric,),
-                                        known=a.kept.get("why"))
+                                        known=a.kept["why"])
     if metric not in found.contributions:
         return pictures.message(size, f"{label(metric)[0]} has no value in some mixture of the two designs (a buried "
                                 "wheel), so that its difference cannot be shared out. Choose another metric.")
@@ -173,7 +168,7 @@ def band_of(a, stop):
     ends = []
     for some in np.array_split(knots, 4):
         if stop():
-            return a.band
+            return a.kept["band"]
         *changed, model = replaced(a.design, a.scenario, a.model, draws | {name: some})
         values = np.asarray(getattr(evaluate(*changed, model=model), metric), float)
         ends.append(np.quantile(np.nan_to_num(values), [0.05, 0.95], axis=0))
@@ -184,9 +179,8 @@ def swept(a, size):
     """A sweep over one field, or a map over two."""
     over, metric = swept_over(a.now), a.now["sweep_metric"]
     fields = {name: NUMBERS[name] for name in over}
-    now = {**a.design.numbers(), **a.scenario.numbers(), **a.scenario.soil.numbers(), **a.model.numbers()}
     axes = [f.label + (f" ({f.unit})" if f.unit else "") for f in fields.values()]
-    here = [min(now[name], f.high) * f.factor for name, f in fields.items()]           # no limit: at the end
+    here = [min(a.now[name], f.high) * f.factor for name, f in fields.items()]           # no limit: at the end
 
     def found(over):
         p = sweep(a.design, a.scenario, over, model=a.model).performance
@@ -205,7 +199,8 @@ def swept(a, size):
     others = ()
     if name in DESIGN_SPACE:                             # a mission's field is not the rovers' own
         others = getattr(published()[1], name) * f.factor, *rovers(a, metric)
-    band = a.band[1] if a.band[0] == (name, metric) else None
+    of, band = a.kept["band"]
+    band = band if of == (name, metric) else None
     here = here[0], float(getattr(a.result, metric))
     return pictures.curve(axes[0], metric, points * f.factor, values, stalled, band, here, others, size,
                           log=not f.step, old=not a.sure)
@@ -219,15 +214,15 @@ def front(a, size):
                 'no other beats in every goal.<br><br><button type="button" class="rdk-btn rdk-main" data-do="run">'
                 "Run search</button></div>")
     names = [a.now["front_" + key] for key in ("x", "y", "colour")]
-    rated = a.odds[1] if a.odds[0] == (front, asked(a.scenario.problem.constraints)) else np.full(len(front), np.nan)
+    of, odds = a.kept["odds"]
+    rated = odds if of == (front, asked(a.scenario)) else np.full(len(front), np.nan)
     where = front.scenario.name.replace("_", " ")
     stale = "" if fits(front, a.scenario, a.model) else f"searched for {where} as it was: run again"
     same = np.all([np.equal(getattr(front.designs, name), a.now[name]) for name in DESIGN_SPACE], axis=0)
     picked = int(same.argmax()) if same.any() else None
     title = f"{'Live front' if a.now['live'] else 'Front'} of {where}: {len(front)} designs"
     return pictures.front(front.performance, front.designs, names, a.result, size, rated, picked,
-                          ~meets(front.performance, a.scenario.problem.constraints), title, stale or front.message,
-                          a.ghosts)
+                          ~meets(front.performance, asked(a.scenario)), title, stale or front.message, a.ghosts)
 
 
 PICTURES = {
@@ -248,12 +243,13 @@ def solved(design, scenario, model, name):
     f = NUMBERS[name]
     values = np.unique(np.append(span_of(name, 400), getattr(design, name)))
     *changed, _ = replaced(design, scenario, model, {name: values})
-    found, demands = evaluate(*changed, model=model), scenario.problem.constraints
-    met = meets(found, demands)
+    found = evaluate(*changed, model=model)
+    met = meets(found, asked(scenario))
     if met.any():
         best = values[met][np.abs(np.log((values[met] + 1e-3) / (getattr(design, name) + 1e-3))).argmin()]
         return float(best), f"{f.label} of {f.words(float(f'{best:.4g}'))} {f.unit} meets the demands"
-    apart = [f"{label(metric)[0]} {'≥' if sign == '>=' else '≤'} {limit:g}" for metric, sign, limit in demands
-             if not meets(found, [(metric, sign, limit)]).any()]
+    apart = [f"{label(metric)[0]} {'≥' if sign == '>=' else '≤'} {limit:g}"
+             for metric, sign, limit in scenario.problem.constraints
+             if not (found.feasible & holds(found, (metric, sign, limit))).any()]
     return None, (f"no {f.label} from {f.words(f.low)} to {f.words(f.high)} {f.unit} meets the demands"
                   + ": " * bool(apart) + ", ".join(apart))

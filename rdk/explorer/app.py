@@ -4,15 +4,15 @@
 newest one and shows readings, picture and drawing, then the intervals, so a burst of moves costs one or two answers and
 nothing stale reads as new. Everything also runs without a browser: `set` an input, `settle()`, read `result`.
 """
-from __future__ import annotations
-
 import base64
+import contextlib
 import html
 import json
 import math
 import os
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import ipywidgets as W
 import numpy as np
@@ -26,8 +26,7 @@ from ..sizing import size
 from ..tradespace import pareto_front
 from . import answers, page
 from .inputs import DESIGN, METRICS, NUMBERS, ODDS, check, label, place
-from .state import PINS, State
-from .worker import Refresher
+from .state import State
 
 LIVE = 40, 24                                            # population and generations of a live front from nothing
 SLOW = "why", "sweep", "optimise"                        # views whose picture may come after the readings
@@ -73,43 +72,33 @@ class Explorer(State):
 
     def __init__(self, rover="Rashid-1", scenario="equatorial_mare_traverse", *, view="log", model=Model(), state=""):
         self.error, self.intervals, self.binding = "", None, None
+        self._worker = ThreadPoolExecutor(1)             # awaited at exit: a daemon in compiled code would abort
+        self._wanted = self._answered = self._last = None
         self._thread, self._stop, self._progress, self._status = None, threading.Event(), (0, 1), ""
         self._heard, self._size, self._drawer, self._picture, self._shown = 0, (600, 380), ("", ""), "", ""
-        self._table, self._odds, self._band, self._reading, self._kept = [], (None, None), (None, None), "", {}
+        self._table, self._reading = [], ""
+        self._kept = {"why": None, "odds": (None, None), "band": (None, None)}
         self._app = os.environ.get("SERVER_SOFTWARE", "").startswith("voila")
         super().__init__(catalog.rover(rover) if isinstance(rover, str) else rover,
                          catalog.scenario(scenario) if isinstance(scenario, str) else scenario, model)
-        self._build()
-        self._refresher = Refresher(self._refresh, self._lock)
+        fixed = {"top": page.top(self._app), "left": page.left(self.menus), "views": page.views(self.menus)}
+        self.parts = {name: W.HTML(fixed.get(name, "")).add_class(f"rdk-{name}") for name in
+                      ("top", "drawer", "left", "verdict", "views", "picture", "side", "tray", "data")}
+        self.bridge = W.Text(layout=W.Layout(display="none")).add_class("rdk-bridge")
+        self.bridge.observe(self._hear, "value")
+        grid = W.Box([*self.parts.values(), self.bridge]).add_class("rdk-grid")
+        self.widget = W.VBox([grid]).add_class("rdk-explorer")
         self.set(view=view)
         if text := state or (os.environ.get("QUERY_STRING", "") if self._app else ""):
             self._restore_link(text)
         self.settle()
 
-    def settle(self, timeout_s=60):
-        """Wait until readings and picture show the present state."""
-        self._refresher.settle(timeout_s)
-
     # ---- the page ---------------------------------------------------------------------------------------------
-
-    def _build(self):
-        """The widgets: those of HTML, and the box through which the page speaks."""
-        fixed = {"top": page.top(self._app), "left": page.left(self.menus), "views": page.views(self.menus)}
-        self.parts = {name: W.HTML(fixed.get(name, "")).add_class(f"rdk-{name}") for name in
-                      ("top", "drawer", "left", "verdict", "views", "picture", "side", "tray", "data")}
-        self.bridge = W.Text(layout=W.Layout(display="none")).add_class("rdk-bridge")
-        grid = W.Box([*self.parts.values(), self.bridge]).add_class("rdk-grid")
-        self.widget = W.VBox([grid]).add_class("rdk-explorer")
-        self.bridge.observe(self._hear, "value")
 
     def _hear(self, change):
         """Act on the page's events: slide, type, choose, do, size."""
-        try:
-            events = json.loads(change.new)
-        except ValueError:
-            return
         with self._lock:
-            for number, kind, *arguments in events:
+            for number, kind, *arguments in json.loads(change.new):
                 if number > self._heard:
                     self._heard = number
                     if kind != "size":                   # a page that takes its place is no answer to words
@@ -176,8 +165,8 @@ class Explorer(State):
     def _repr_mimebundle_(self, **kwargs):
         """The widgets; for readers without a kernel, the readings as text and the picture."""
         still = {"text/plain": self.text()}
-        if self.image() is not None and not self.state["live"]:
-            still["image/svg+xml"] = self.image().data
+        if (picture := self.image()) and not self.state["live"]:
+            still["image/svg+xml"] = picture.data
         return {**self.widget._repr_mimebundle_(**kwargs), **still}
 
     def image(self):
@@ -195,37 +184,55 @@ class Explorer(State):
 
     # ---- answers ----------------------------------------------------------------------------------------------
 
+    def _poke(self):
+        """Ask for an answer to the state as it is now; what one asks who holds the lock is answered once."""
+        with self._lock, contextlib.suppress(RuntimeError):                  # the program may be ending
+            self._wanted = object()
+            self._last = self._worker.submit(self._refresh)
+
+    @property
+    def _overtaken(self):
+        """A newer state waits for its answer."""
+        return self._wanted is not self._answered
+
+    def settle(self, timeout_s=60):
+        """Wait until readings and picture show the present state; a TimeoutError where that takes longer."""
+        self._last.result(timeout_s)
+
     def _refresh(self):
-        """Compute the present state and show it; an error becomes a message, never a traceback in a thread."""
+        """Compute the newest state and show it; an error becomes a message, never a traceback in a thread."""
         with self._lock:
-            now, heard, pins, before = self.state, self._heard, list(self._pins), self._before
-            (design, scenario, model), reference = self._now, self._reference()
+            if not self._overtaken:
+                return
+            self._answered = self._wanted
+            now, heard, pinned, before = self.state, self._heard, self.pinned, self._before
+            (design, scenario, model), reference = self._now, self._reference
         view = now["view"]
         if view in SLOW or view != self._shown:
             self._tell(heard, busy=True)
         try:
-            result = evaluate(design, scenario, model=model)
-            self.result, self.binding = result, explain.binding(design, scenario, result, model=model)
+            result = self.result = evaluate(design, scenario, model=model)
+            binding = self.binding = explain.binding(design, scenario, result, model=model)
             self.error = ""
+            levers = explain.levers(design, scenario, result, binding.key, model=model)
             ghosts = [(letter, cls, evaluate(other, scenario, model=model))
-                      for (letter, cls, _), (_, other) in zip(PINS, pins)]
-            levers = explain.levers(design, scenario, result, self.binding.key, model=model)
-            answer = answers.Answer(now, design, scenario, model, result, self.binding, levers, before, ghosts,
-                                    reference, self.intervals)
+                      for (letter, cls, _), other in zip(page.PINS, pinned.values())]
+            answer = answers.Answer(now, design, scenario, model, result, binding, levers, before, ghosts, reference,
+                                    self.intervals, False, self.front, self._kept)
             self.parts["verdict"].value, self._table = answers.answer(answer)
             self.parts["side"].value = rover_picture(design, result, scenario, width=290)
-            self.parts["tray"].value = page.tray(answers.against(answer, pins), [colour for *_, colour in PINS])
+            self.parts["tray"].value = page.tray(pinned, answers.against(answer))
             self._show(answer)
-            self._tell(heard, busy=self._refresher.overtaken)
+            self._tell(heard, busy=self._overtaken)
             time.sleep(YIELD_S)
-            if not self._refresher.overtaken:            # intervals for the newest state alone
+            if not self._overtaken:                      # intervals for the newest state alone
                 self.intervals = intervals(design, scenario, draws=answers.DRAWS, model=model)
                 answer = answer._replace(spans=self.intervals, sure=True)
                 if view in ("fleet", "mass") or view == "log" and self._size[0] >= WIDE:     # they show intervals
                     self._show(answer)
                 self.parts["verdict"].value, self._table = answers.answer(answer)
                 if view == "sweep" and not now["sweep_second"]:
-                    self._band = answers.band_of(answer._replace(band=self._band), lambda: self._refresher.overtaken)
+                    self._kept["band"] = answers.band_of(answer, lambda: self._overtaken)
                     self._show(answer)
                 self._rate(answer, heard)
         except Exception as error:                       # anything at all: the app must go on and say what happened
@@ -242,7 +249,7 @@ class Explorer(State):
                 answer.scenario.replace(problem=Problem()), population=LIVE[0], seed=1, start=self.front, warn=False,
                 generations=LIVE[1] // (1 if self.front is None else 2), model=answer.model), None
         names = [view] + (["mass" if view == "log" else "log"] if width >= WIDE else [])
-        answer = answer._replace(front=self.front, odds=self._odds, band=self._band, kept=self._kept)
+        answer = answer._replace(front=self.front)
         size = (width - 14 * (len(names) - 1)) // len(names), height
         drawn = [answers.PICTURES[name](answer, size) for name in names]
         self._picture, self._shown = drawn[0], view
@@ -250,29 +257,31 @@ class Explorer(State):
 
     def _rate(self, answer, heard):
         """The odds of the front's designs where they are its colour, some at a time; news come first."""
-        front, demands = self.front, answers.asked(answer.scenario.problem.constraints)
+        front, demands = self.front, answers.asked(answer.scenario)
         if answer.now["view"] != "optimise" or answer.now["front_colour"] != ODDS or not front:
             return
-        if self._odds[0] != (front, demands):
-            self._odds = (front, demands), np.full(len(front), np.nan)
-        odds = self._odds[1]
-        while np.isnan(odds).any() and not self._refresher.overtaken:
+        if self._kept["odds"][0] != (front, demands):
+            self._kept["odds"] = (front, demands), np.full(len(front), np.nan)
+        odds = self._kept["odds"][1]
+        while np.isnan(odds).any() and not self._overtaken:
             some = np.flatnonzero(np.isnan(odds))[:RATED]
-            found = intervals(front.designs[some], front.scenario, draws=answers.DRAWS, model=front.model)
-            odds[some] = found.share(demands)
+            odds[some] = intervals(front.designs[some], front.scenario, draws=answers.DRAWS,
+                                   model=front.model).share(demands)
             self._status = f"odds of {np.isfinite(odds).sum()} of {len(front)} designs, by {answers.DRAWS:,} draws each"
             self._show(answer)
-            self._tell(heard, busy=self._refresher.overtaken)
+            self._tell(heard, busy=self._overtaken)
 
     def _differences(self):
         """Table of the pinned designs beside the present one, on the present mission."""
-        designs = [self.design, *(design for _, design in self._pins)]
-        found = [evaluate(design, self.scenario, model=self.model) for design in designs]
+        designs = {"now": self.design} | self.pinned
+        found = [evaluate(design, self.scenario, model=self.model) for design in designs.values()]
         rows = [(label(name)[0], *(answers.words(float(getattr(p, name)), digits, label(name)[1]) for p in found))
                 for name, digits in METRICS.items()]
-        rows += [(f.label, *(f"{f.words(getattr(d, name))} {f.unit}" for d in designs)) for name, f in DESIGN.items()
-                 if len({getattr(d, name) for d in designs}) > 1]
-        return page.table(("", "now", *(f"{letter} {name}" for (letter, *_), (name, _) in zip(PINS, self._pins))), rows)
+        for name, field in DESIGN.items():
+            values = [getattr(design, name) for design in designs.values()]
+            if len(set(values)) > 1:
+                rows.append((field.label, *(f"{field.words(value)} {field.unit}" for value in values)))
+        return page.table(("", *designs), rows)
 
     def _tell(self, heard, busy=False):
         """Send the values of all inputs and the small texts to the page; `heard` is the last event that is answered."""
@@ -322,8 +331,7 @@ class Explorer(State):
             self._notice = ("alert" if found.message else "status", said)
             return said
 
-        wanted = answers.asked(self.scenario.problem.constraints)
-        self._begin(take, "looking for the lightest rover", wait, size, wanted)
+        self._begin(take, "looking for the lightest rover", wait, size, answers.asked(self.scenario))
 
     def _begin(self, take, words, wait, search, *given, **options):
         """Start a search in a thread of its own, unless one is under way; `take` uses what it found, and says so."""

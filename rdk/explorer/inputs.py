@@ -1,6 +1,4 @@
 """The explorer's inputs: their table, their menus, what people type into them."""
-from __future__ import annotations
-
 import math
 import re
 from typing import NamedTuple

@@ -4,8 +4,6 @@ The page keeps no state. Everything that is moved, typed or pressed goes to Pyth
 list of numbered events; Python answers with new HTML, and with the values of all inputs as JSON, which the script
 copies into the inputs unless newer events are still under way.
 """
-from __future__ import annotations
-
 import math
 from html import escape
 from pathlib import Path
@@ -15,6 +13,7 @@ from .inputs import NUMBERS, VIEWS
 STYLE, SCRIPT = ((Path(__file__).parent / name).read_text(encoding="utf-8") for name in ("page.css", "page.js"))
 SAVES = {"design.json": "Design (json)", "design.csv": "Design (csv)", "front.json": "Front (json)",
          "front.csv": "Front (csv)", "picture.svg": "Picture (svg)", "report.html": "Report (one page)"}
+PINS = ("A", "c1", "#c04a00"), ("B", "c2", "#007a59"), ("C", "c3", "#6a7488")             # letter, class, colour
 STATUS = {"met": "✓ met", "missed": "✗ missed", "risk": "! at risk", "none": ""}
 
 
@@ -132,20 +131,20 @@ def verdict(status, sentence, why, levers, odds, cards, readings, old=False):
         </details>"""
 
 
-def card(title, value, unit, status, note, change="", at=math.nan, interval=None, need=None, old=False):
-    """A reading: value, 90 % interval, requirement, status and change since the last move."""
-    known = [v for v in (at, *(interval or ()), need) if v is not None and math.isfinite(v)]
+def card(title, value, unit, status, note, change, at, interval, need, old):
+    """A reading: value and change since the last move; a gauge with 90 % interval and requirement; a note."""
+    known = [v for v in (at, *interval, need) if math.isfinite(v)]
     low, high = min(known, default=0), max(known, default=0)
 
     def share(v):
         """Where a value stands in the gauge."""
-        return f"{100 * min(max((v - low) / (high - low or abs(high) or 1) + 0.06, 0) / 1.12, 1):.1f}%"
+        return f"{100 * ((v - low) / (high - low or 1) + 0.06) / 1.12:.1f}%"
 
     gauge = ""
-    if interval is not None and not math.isnan(sum(interval)):
+    if interval and not math.isnan(sum(interval)):
         gauge = f'<i class="s" style="left:{share(interval[0])};right:calc(100% - {share(interval[1])})"></i>'
     for mark, v in ("p", at), ("r", need):
-        if v is not None and not math.isnan(v):
+        if math.isfinite(v):
             gauge += f'<i class="{mark}" style="left:{share(v)}"></i>'
     stale = "rdk-old" if old else ""
     return f"""<div class="rdk-card rdk-{status}"><div class="h"><span>{title}</span><b>{STATUS[status]}</b></div>
@@ -162,14 +161,14 @@ def table(header, rows):
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def tray(pins, colours):
-    """The pinned designs; each is (letter, title, words)."""
+def tray(names, differences):
+    """The pinned designs, and how each differs from the present one."""
     cards = "".join(f"""<div class="rdk-pin" style="border-left-color:{colour}">
-        {button(f"use:{i}", f"<b>{letter} {escape(title)}</b><br>{escape(words)}", 'title="back to this design"')}
+        {button(f"use:{i}", f"<b>{escape(name)}</b><br>{escape(words)}", 'title="back to this design"')}
         {button(f"unpin:{i}", "✕", f'aria-label="remove {letter}"')}</div>"""
-                    for i, ((letter, title, words), colour) in enumerate(zip(pins, colours)))
-    empty = button("pin", "+ pin the present design", 'class="rdk-empty"') if len(pins) < 3 else ""
-    differ = "<b>Compare</b> with now<br>" + button("differences", "Table of differences") if pins else (
+                    for i, ((letter, _, colour), name, words) in enumerate(zip(PINS, names, differences)))
+    empty = button("pin", "+ pin the present design", 'class="rdk-empty"') if len(names) < len(PINS) else ""
+    differ = "<b>Compare</b> with now<br>" + button("differences", "Table of differences") if names else (
         '<b>Compare</b><br><span class="rdk-say">pinned designs</span>')
     return f"""<section class="rdk-pins" aria-label="compare"><div>{differ}</div>{cards}{empty}</section>"""
 

@@ -1,6 +1,4 @@
 """The explorer's state: a rover, a mission, a model and what else is chosen; its past, pins, link and files."""
-from __future__ import annotations
-
 import contextlib
 import functools
 import math
@@ -16,9 +14,9 @@ from ..report import report
 from ..sampling import replaced, single
 from ..tradespace import Front
 from . import answers
-from .inputs import COEFFICIENTS, DEMANDS, DESIGN, GOALS, NONE, NUMBERS, OWN, SKY, START, check, choices, title
+from .inputs import COEFFICIENTS, DEMANDS, DESIGN, GOALS, NONE, NUMBERS, OWN, SKY, check, choices, title
+from .page import PINS, SAVES
 
-PINS = ("A", "c1", "#c04a00"), ("B", "c2", "#007a59"), ("C", "c3", "#6a7488")
 PAST = 200                                               # states that undo remembers
 FIRST = "rover", "mission", "preset", "site"             # of a link: the values come after the names
 CHOSEN = {"view": "log", "baseline": "MoonRanger", "why_metric": "range_km", "sweep_first": "wheel_radius_m",
@@ -35,7 +33,7 @@ class State:
     def __init__(self, design, mission, model):
         single(rover=design, scenario=mission, model=model)
         self.menus, self.front, self.result = choices(), None, None
-        self._recipe = self._before = self._refresher = None
+        self._recipe = self._before = None
         self._lock = threading.RLock()
         self._past, self._future, self._drag, self._pins = [], [], ("", 0), []
         self._notice = ("", "")
@@ -48,15 +46,13 @@ class State:
         self._put(design, mission)
         self._start = self.design
 
-    def _poke(self):
-        """Ask for an answer to the state as it is now."""
-        if self._refresher is not None:
-            self._refresher.poke()
-
     design = property(lambda self: self._now[0], doc="The Design that the inputs show.")
     scenario = property(lambda self: self._now[1], doc="The Scenario that the inputs show, with its demands and goals.")
     model = property(lambda self: self._now[2], doc="The Model that the inputs show.")
     state = property(lambda self: self._chosen | self._values(*self._now), doc="Every input, as `set` takes them.")
+    _reference = property(lambda self: self._rovers.get(self._chosen["baseline"], self._start), doc='That of "why".')
+    pinned = property(lambda self: {f"{letter} {name}": design for (letter, *_), (name, design) in zip(
+        PINS, self._pins)}, doc="The pinned designs by letter and name.")
 
     def _values(self, design, mission, model):
         """Rover, mission and model as the inputs show them."""
@@ -184,7 +180,8 @@ class State:
         elif name in DEMANDS:
             kept = {(metric, sign): limit for metric, sign, limit in problem.constraints} | {DEMANDS[name]: value}
             names = dict.fromkeys([*DEMANDS.values(), *kept])                # always in one order
-            kept = tuple((*key, kept[key]) for key in names if kept.get(key, 0) not in (0, math.inf))
+            kept = tuple((*key, kept[key]) for key in names
+                         if key in kept and (key != DEMANDS[name] or 0 < value < math.inf))
             self._show_mission(problem=problem.replace(constraints=kept))
         elif name in GOALS:
             kept = problem.objectives | {GOALS[name]: value}
@@ -254,22 +251,21 @@ class State:
 
     def file(self, name):
         """The text of a file: design.json, design.csv, front.json, front.csv, picture.svg or report.html."""
-        design, scenario, front = self.design, self.scenario, self.front
-        if name.startswith("front") and not front:
-            raise ValueError("there is no front yet: run a search first")
-        rover, own = self.state["rover"], answers.fits(front, scenario, self.model)
-        made = {"design.json": lambda: catalog.to_json(design, scenario),
-                "design.csv": lambda: catalog.to_csv(design, self.result),
-                "front.json": lambda: catalog.to_json(front.designs, front.scenario),
-                "front.csv": lambda: catalog.to_csv(front.designs, front.performance),
-                "picture.svg": lambda: self._picture,
-                "report.html": lambda: report(
-                    design, scenario, f"{'A rover' if rover == OWN else rover} for {title(scenario.name)}",
-                    model=self.model, front=front if own else None,
-                    candidates={f"{letter} {name}": other for (letter, *_), (name, other) in zip(PINS, self._pins)})}
-        if name not in made:
-            raise ValueError(f"no file {name!r}; choose from {', '.join(made)}")
-        return made[name]()
+        if name not in SAVES:
+            raise ValueError(f"no file {name!r}; choose from {', '.join(SAVES)}")
+        (design, scenario, model), front, result = self._now, self.front, self.result
+        if name == "picture.svg":
+            return self._picture
+        if name == "report.html":
+            rover = self.state["rover"]
+            return report(design, scenario, f"{'A rover' if rover == OWN else rover} for {title(scenario.name)}",
+                          model=model, front=front if answers.fits(front, scenario, model) else None,
+                          candidates=self.pinned)
+        if name.startswith("front"):
+            if not front:
+                raise ValueError("there is no front yet: run a search first")
+            design, scenario, result = front.designs, front.scenario, front.performance
+        return catalog.to_json(design, scenario) if name.endswith("json") else catalog.to_csv(design, result)
 
     def load(self, name, text):
         """Show a design, or a front, from a file's name and text; a notice says what was wrong with it."""
@@ -291,17 +287,13 @@ class State:
                 design = design[0]
             self._put(design, mission, note)
 
-    def _reference(self):
-        """The design that "why" compares with."""
-        return self._start if self._chosen["baseline"] == START else self._rovers[self._chosen["baseline"]]
-
     def python(self):
         """The Python that reproduces the readings and what the view shows of them."""
         (design, scenario, model), view, more = self._now, self._chosen["view"], {}
         calls = ["result = rdk.evaluate(design, mission, model=model)",
                  f"intervals = rdk.intervals(design, mission, draws={answers.DRAWS}, model=model)"]
         if view == "why":
-            more = {"baseline": self._reference()}
+            more = {"baseline": self._reference}
             calls.append("why = rdk.attribution(design, baseline, mission, model=model)")
         elif view == "sweep":
             over = {name: values.tolist() for name, values in answers.swept_over(self._chosen).items()}
