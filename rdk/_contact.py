@@ -255,11 +255,8 @@ def climb(patch, weight, slope_deg, low, high, slip, limit_deg):
 
 
 def _brakes(patch, load, low):
-    """Lanes whose pull at the low end of the slip interval is surely negative.
-
-    Where (1 - s) cos(theta_1) > 1 the soil slides forward under the whole arc, so shear only brakes. One evaluation
-    shows that a wheel carries its load within that angle, where the exact pull would take a solve.
-    """
+    """Lanes whose pull at the low end of the slip interval is surely negative: the exact pull would take a solve."""
+    # where (1 - s) cos(theta_1) > 1 the soil slides forward under the whole arc, so shear only brakes
     theta_limit = np.arccos(np.minimum(1 / (1 - low), 1))
     return Arcs(theta_limit, low, patch).load > load
 

@@ -233,11 +233,6 @@ def _arrival(limit_km, distance_km, speed_km_h, driving, times, steps):
     return np.where(reached, times[last] - over / rate, np.inf)
 
 
-def _above_rounding(power_w):
-    """Power in W, 0 where it is negative or a rounding error of a difference of watts."""
-    return np.where(power_w > 1e-9, power_w, 0.0)
-
-
 def _log(lane, times, steps, solar, base_load, mobility, stored, soc, initial, throttled, speed_km_h):
     """The march of one design as a TraverseLog."""
     solar, mobility, stored, soc, throttled, speed_km_h = (
@@ -247,11 +242,13 @@ def _log(lane, times, steps, solar, base_load, mobility, stored, soc, initial, t
     net = solar - load
     accepted = np.maximum(change, 0) / lane.charge_efficiency
     delivered = np.maximum(-change, 0) * lane.discharge_efficiency
+    # differences of watts: below that they are rounding errors
+    discarded, unserved = (np.where(w > 1e-9, w, 0.0) for w in (net - accepted, -net - delivered))
     elevation, azimuth = power.sun_position(lane.latitude_deg, *(np.ravel(angle) for angle in _sun(times, lane)))
     lit = 1.0 * (elevation > 0) if lane.skyline is None else sky.lit_fraction(elevation, azimuth, lane.skyline)
     return TraverseLog(
         time_h=times, step_h=steps, sun_elevation_deg=elevation, lit_fraction=lit, solar_w=solar,
         load_w=load, mobility_w=mobility, stored_wh=stored, soc=soc, throttled=throttled,
-        discarded_w=_above_rounding(net - accepted), unserved_w=_above_rounding(-net - delivered),
+        discarded_w=discarded, unserved_w=unserved,
         battery_loss_w=accepted - np.maximum(change, 0) + np.maximum(-change, 0) - delivered,
         distance_km=np.minimum(np.cumsum(speed_km_h * steps), lane.traverse_limit_km))

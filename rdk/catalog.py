@@ -276,16 +276,11 @@ def read_json(text: str):
                 raise ValueError(f"{name!r} stands there twice")
         return dict(pairs)
 
+    require(text=(text, str))
     try:
-        return json.loads(_text(text), object_pairs_hook=once)
+        return json.loads(text.lstrip("\ufeff"), object_pairs_hook=once)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"not a JSON file: {error}") from None
-
-
-def _text(text):
-    """The text of a file without its byte-order mark."""
-    require(text=(text, str))
-    return text.lstrip("\ufeff")
 
 
 def _number(value):
@@ -336,7 +331,8 @@ def from_csv(text: str) -> Design:
     Columns are separated by commas, or by semicolons or tabs: then decimal commas are read, too. More columns may
     stand there. ValueError if a column is missing or stands there twice, or a value is not a number or not allowed.
     """
-    lines = [line for line in io.StringIO(_text(text), newline=None) if line.strip(" ,;\t\n")]
+    require(text=(text, str))
+    lines = [line for line in io.StringIO(text.lstrip("\ufeff"), newline=None) if line.strip(" ,;\t\n")]
     if lines and re.fullmatch(r'"?sep=."?\s*', lines[0], re.IGNORECASE):
         lines = lines[1:]                                # a spreadsheet's hint
     separator = max(",;\t", key=lines[0].count) if lines else ","

@@ -169,9 +169,7 @@ class Scenario(Record):
                                  f"got {self.start_utc!r}") from None
         if self.skyline is not None:
             object.__setattr__(self, "skyline", Skyline.of(self.skyline))
-        if not isinstance(self.soil, Soil):
-            raise ValueError(f"soil must be a Soil, such as rdk.soil('apollo-nominal'); got {self.soil!r}")
-        require(problem=(self.problem, Problem))
+        require(soil=(self.soil, Soil), problem=(self.problem, Problem))
         super().__post_init__()
 
 

@@ -14,11 +14,7 @@ from ._fields import Real, Record
 
 @dataclass(frozen=True)
 class MassBreakdown(Record):
-    """Line items in kg, each a number or an array; they add up to `total_kg`.
-
-    `linkage_kg` is the rocker-bogie suspension, zero for a rigid four-wheel layout; `growth_kg` the dry-mass growth
-    allowance.
-    """
+    """Line items in kg, each a number or an array; they add up to `total_kg`. A rigid layout has no linkage."""
     chassis_kg: float
     wheels_kg: float
     motors_kg: float

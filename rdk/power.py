@@ -67,9 +67,8 @@ def march_battery(net_power_w: np.ndarray, time_step_h: Real, capacity_wh: Real,
                   discharge_efficiency: Real = 0.95) -> np.ndarray:
     """Stored energy in Wh after each time step, eq. battery-update, clamped between the floor and a full pack.
 
-    Surplus at full charge is discarded; demand on the floor is not served. (The traverse throttles driving there,
-    which cannot lift the charge above the floor: the march does not depend on it.) The power into the pack, shape
-    (steps, ...), is overwritten and returned as the result; the steps' length may have its shape, all else has (...).
+    Surplus at full charge is discarded; demand on the floor is not served. The power into the pack, shape (steps, ...),
+    is overwritten and returned as the result; the steps' length may have its shape, all else has (...).
     """
     energy = net_power_w
     energy *= np.where(energy >= 0, charge_efficiency, 1 / np.asarray(discharge_efficiency))

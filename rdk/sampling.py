@@ -71,10 +71,7 @@ def _limits(bounds):
 
 
 def decode(genes: np.ndarray, bounds: dict | None = None) -> Design:
-    """Designs from genes in the unit cube, shape (n, 11): scaled, grouser count rounded, wheel count thresholded.
-
-    Every design that the optimiser sees can be built: 4 or 6 wheels, a whole number of grousers.
-    """
+    """Designs from genes in the unit cube, shape (n, 11): scaled, grouser count rounded, wheel count thresholded."""
     genes, values = check("genes", genes), {}
     for (name, variable), gene, a, b in zip(DESIGN_SPACE.items(), genes.T, *_limits(bounds)):
         value = np.clip(a + gene * (b - a), a, b)
@@ -276,8 +273,6 @@ def intervals(design: Design, scenario: Scenario, *, draws: int = DRAWS, seed: i
     --------
     >>> import rdk
     >>> found = intervals(rdk.rover("Rashid-1"), rdk.scenario("equatorial_mare_traverse"))
-    >>> bool(found.low["total_mass_kg"] < found.nominal["total_mass_kg"] < found.high["total_mass_kg"])
-    True
     >>> bool(0 < found.share([("range_km", ">=", 30), ("slope_capability_deg", ">=", 15)]) < 1)
     True
     """
@@ -323,10 +318,9 @@ def attribution(design: Design, baseline: Design, scenario: Scenario, *, model: 
     """Exact Shapley values of each metric's difference between two single designs, over the eleven design variables.
 
     Every mixture of the two designs is evaluated, 2^k of them in one call where k variables differ, and each variable
-    is credited with its mean marginal effect over all orders in which the variables could change (Shapley 1953). A
-    variable with one value in both designs has no effect and no share. Metrics that are not finite in all mixtures are
-    left out; true/false ones count as 1 and 0. Fewer `metrics` take less time; mixtures that a `known` attribution
-    has, of the same baseline, mission, model and metrics, are not evaluated again.
+    is credited with its mean marginal effect over all orders in which the variables could change (Shapley 1953).
+    Metrics that are not finite in all mixtures are left out; true/false ones count as 1 and 0. Mixtures that a `known`
+    attribution has, of the same baseline, mission, model and metrics, are not evaluated again.
     """
     single(design=design, baseline=baseline, scenario=scenario, model=model)
     require(**{} if known is None else {"known": (known, Attribution)})

@@ -308,8 +308,7 @@ def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confid
     single(scenario=scenario, model=model)
     if minimise not in METRICS:
         raise unknown("minimise: no Performance field", minimise, METRICS)
-    if confidence is not None:
-        confidence = check("confidence", confidence, above=0, below=1, scalar=True)
+    confidence = check("confidence", confidence, above=0, below=1, scalar=True, optional=True)
     seed = whole("seed", seed)
     asked = checked(demands, "demands", scenario, may_contradict=True)
     search = _Search(scenario, asked, minimise, confidence, model, bounds, seed)

@@ -110,11 +110,7 @@ class WheelForces(NamedTuple):
 
 
 class SlipBalance(NamedTuple):
-    """Where the pull meets the demand; NaN and stalled where the wheel is buried.
-
-    `stalled` where no slip of the interval meets it, `buried` where the soil cannot carry the wheel, `sliding` where it
-    cannot brake enough (stalled too, slip at the low end of the interval).
-    """
+    """Where the pull meets the demand; NaN and stalled where the wheel is buried, stalled where it slides."""
     slip: np.ndarray
     drawbar_pull_n: np.ndarray
     torque_nm: np.ndarray
@@ -140,10 +136,8 @@ class ContactStress(NamedTuple):
 def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: ArrayLike, **options) -> WheelForces:
     """Drawbar pull, torque and sinkage of one wheel at given load and slip.
 
-    The entry angle is the one at which the soil's vertical reaction equals the load (the paper's force balance);
-    forces follow from the stress integrals over the contact arc. NaN where no angle in (0, 90 deg) carries the load,
-    which is positive. The slip s = 1 - v / (omega r), eq. slip, is -1 to 1 and negative when braking; the options are
-    those of `KernelOptions`.
+    NaN where no entry angle in (0, 90 deg) carries the load, which is positive. The slip s = 1 - v / (omega r), eq.
+    slip, is -1 to 1 and negative when braking; the options are those of `KernelOptions`.
 
     Examples
     --------

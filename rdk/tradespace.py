@@ -165,9 +165,8 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
     """Pareto front of a mission by NSGA-II on the evaluator itself.
 
     pymoo's NSGA-II with the paper's operators: simulated binary crossover (0.9, eta 15), polynomial mutation (0.9
-    per individual, 1/11 per gene, eta 20), binary tournament, duplicates removed. Genes are decoded before evaluation;
-    a whole generation is one call of `evaluate`. Lanes without a solution count as strongly infeasible. Where no design
-    meets the constraints the front is empty, with a message and, if `warn`, a UserWarning.
+    per individual, 1/11 per gene, eta 20), binary tournament, duplicates removed. Where no design meets the
+    constraints the front is empty, with a message and, if `warn`, a UserWarning.
 
     Parameters
     ----------

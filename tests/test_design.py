@@ -92,8 +92,6 @@ REFUSED = [
      "duration_earth_days must be above 0 and at most 3660 and finite; got 0"),
     (SCENARIO, dict(duration_earth_days=[7, 14]),
      "duration_earth_days must be one number, not an array; got 2 values"),
-    (SCENARIO, dict(soil="apollo-nominal"),
-     "soil must be a Soil, such as rdk.soil('apollo-nominal'); got 'apollo-nominal'"),
     (MODEL, dict(drivetrain_efficiency=0),
      "drivetrain_efficiency must be above 0 and at most 1 and finite; got 0"),
     (MODEL, dict(slip_max=1.0), "slip_max must be at least -1 and below 1 and finite; got 1.0"),
@@ -402,6 +400,8 @@ def test_a_problem_is_a_value_and_a_mission_takes_nothing_else():
     assert SCENARIO.replace(slope_deg=[1.0, 2.0], problem=asked)[1].problem == asked
     with pytest.raises(TypeError, match=r"problem must be a Problem, such as rdk.Problem\(\); got 'polar'"):
         SCENARIO.replace(problem="polar")
+    with pytest.raises(TypeError, match=r"soil must be a Soil, such as rdk.soil\('apollo-nominal'\); got 'apollo-nomi"):
+        SCENARIO.replace(soil="apollo-nominal")
 
 
 def test_results_of_long_arrays_show_their_ends():
