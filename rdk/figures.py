@@ -1,7 +1,4 @@
-"""Figures in one style: curves and panels for a notebook's cell, and live pictures with sliders.
-
-Every figure reads without colour: dashes and markers differ too.
-"""
+"""Figures in one style that reads without colour: curves and panels for a notebook's cell, and live pictures."""
 from __future__ import annotations
 
 import base64

@@ -13,7 +13,6 @@ from string import Template
 import numpy as np
 
 from . import catalog, explain, pictures
-from .catalog import write
 from .design import DESIGN_SPACE, Design, Model
 from .mission import evaluate
 from .rover_picture import rover_picture
@@ -52,21 +51,16 @@ explorer.</p>
 </body></html>
 """)
 SIZE = 470, 215                                          # of a picture, in pixels of its own
-Requirement = namedtuple("Requirement", "metric words nominal low high met share driver")
-"""A demand on one metric, and how surely a design meets it.
+Requirement = namedtuple("Requirement", "demand words nominal low high met share driver")
+"""A demand such as ("range_km", ">=", 30), and how surely a design meets it.
 
 `low` and `high` span the 90 % interval, `share` is the share of draws in which the demand holds, `driver` the uncertain
 input with the strongest rank correlation to the metric ("" where the metric does not vary).
 """
 
 
-def asked(scenario):
-    """The demands of a mission's problem; that the rover drives the mission comes first."""
-    return [("feasible", ">=", 1.0), *posed(scenario)[1].constraints]
-
-
 def requirements(design, scenario, *, draws=DRAWS, model=Model()):
-    """The demands of a mission's problem on a single design as Requirements, each with its chance to hold.
+    """The demands of a mission's problem on a single design as Requirements; that it drives the mission comes first.
 
     A share covers the table of uncertainties and nothing that the models leave out.
     """
@@ -75,7 +69,7 @@ def requirements(design, scenario, *, draws=DRAWS, model=Model()):
     found, rows = intervals(design, scenario, draws=draws, model=model), []
     ranks = {name: rankdata(values) for name, values in uncertain_inputs(scenario, draws=draws, model=model).items()
              if np.ptp(values) > 0}
-    for demand in asked(scenario):
+    for demand in [("feasible", ">=", 1.0), *posed(scenario)[1].constraints]:
         metric, sign, limit = demand
         name, unit = explain.label(metric)
         words = name if metric == "feasible" else f"{name} {'≥' if sign == '>=' else '≤'} {limit:g} {unit}".rstrip()
@@ -84,7 +78,7 @@ def requirements(design, scenario, *, draws=DRAWS, model=Model()):
             strength = np.corrcoef([*ranks.values(), rankdata(values)])[-1, :-1]
             driver = list(ranks)[np.abs(strength).argmax()]
         ends = (float(read[metric]) for read in (found.nominal, found.low, found.high))
-        rows.append(Requirement(metric, words, *ends, bool(holds(found.performance, demand)),
+        rows.append(Requirement(demand, words, *ends, bool(holds(found.performance, demand)),
                                 float(holds(found.draws, demand).mean()), driver))
     return rows
 
@@ -125,7 +119,7 @@ def report(design, scenario, title="", notes="", *, front=None, baseline=None, b
              pictures.why("total_mass_kg", [v.label for v in DESIGN_SPACE.values()], shares, baseline_name, SIZE)]
     designs = {"this design": design, **(candidates or {})}
     found = intervals(Design.stack(designs.values()), scenario, draws=draws, model=model)
-    odds = found.share(asked(scenario))
+    odds = found.share([d.demand for d in demands])
     missed = [d.words for d in demands if not d.met]
     verdict = f"Misses {len(missed)} of {len(demands)} demands: {'; '.join(missed)}." if missed else (
         f"Meets all {len(demands)} demands of the mission.")
@@ -148,7 +142,7 @@ def report(design, scenario, title="", notes="", *, front=None, baseline=None, b
              f"{limits[name][0]:g} to {limits[name][1]:g}" + ", outside" * outside[name])
             for name, v in DESIGN_SPACE.items()]),
         demands=_table("demand;design;90 % interval;holds in", [
-            (not d.met, d.words, *(("yes" if d.met else "no", "–") if d.metric == "feasible" else
+            (not d.met, d.words, *(("yes" if d.met else "no", "–") if d.demand[0] == "feasible" else
                                    (f"{d.nominal:.3g}", f"{d.low:.3g} to {d.high:.3g}")), f"{100 * d.share:.0f} %")
             for d in demands]),
         risks=_paragraphs(risks or ["Every demand holds in all draws of the uncertain inputs."]),
@@ -163,7 +157,7 @@ def report(design, scenario, title="", notes="", *, front=None, baseline=None, b
 
 def write_report(design, scenario, path, title="", notes="", **options):
     """Write the page of `report` to an HTML file; `options` go to `report`. Returns the path."""
-    return write(report(design, scenario, title, notes, **options), path)
+    return catalog.write(report(design, scenario, title, notes, **options), path)
 
 
 _text = functools.partial(html.escape, quote=False)

@@ -15,9 +15,10 @@ import pytest
 
 import rdk
 from rdk import catalog, pictures, sky
+from rdk.catalog import write
 from exercises.capstone import SWIRL
 from rdk.design import Problem
-from rdk.report import report, requirements, write
+from rdk.report import report, requirements
 
 MARE = rdk.scenario("equatorial_mare_traverse")
 RASHID = rdk.rover("Rashid-1")
@@ -109,7 +110,9 @@ def test_demands_are_those_of_the_scenario_with_the_drive_itself_first():
     asked = replace(MARE, required_obstacle_height_m=0.04, problem=Problem(
         constraints=(("range_km", ">=", 50), ("total_mass_kg", "<=", 16))))
     found = requirements(RASHID, asked, draws=200)
-    assert [d.metric for d in found] == ["feasible", "range_km", "total_mass_kg", "obstacle_capability_m"]
+    assert [d.demand for d in found] == [
+        ("feasible", ">=", 1.0), ("range_km", ">=", 50), ("total_mass_kg", "<=", 16),
+        ("obstacle_capability_m", ">=", 0.04)]
     assert [d.words for d in found] == ["drives the mission", "range ≥ 50 km", "mass ≤ 16 kg",
                                         "obstacle capability ≥ 0.04 m"]
     nominal, spans = rdk.evaluate(RASHID, asked), rdk.intervals(RASHID, asked, draws=200)
