@@ -48,9 +48,7 @@ def span(*values, zero=False, room=0.06):
 def ticks(low, high, count=5, log=False):
     """Round numbers between two limits."""
     if log:
-        found = [m * 10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-                 for m in (1, 2, 5)]
-        return [t for t in found if low <= t <= high]
+        return [m * 10.0**k for k in range(-9, 10) for m in (1, 2, 5) if low <= m * 10.0**k <= high]
     raw = (high - low) / count
     unit = 10.0**math.floor(math.log10(raw))
     step = unit * next(m for m in (1, 2, 2.5, 5, 10) if m * unit >= 0.999 * raw)
@@ -139,17 +137,14 @@ class Axes:
             self.add("rect", "f3", x=a, y=self.box[1], width=b - a, height=self.box[3] - self.box[1], **look)
 
     def mark(self, x, y, kind="dot", cls="f0", size=5, **more):
-        """A mark at a point, where there is one; no name is set upon it."""
+        """A mark at a point; no name is set upon it."""
         x, y = float(self.x(x)), float(self.y(y))
-        if math.isfinite(x) and math.isfinite(y):
-            self.taken.append((x - size, y - size, x + size, y + size))
-            self.parts.append(sign(kind, cls, x, y, size, **more))
+        self.taken.append((x - size, y - size, x + size, y + size))
+        self.parts.append(sign(kind, cls, x, y, size, **more))
 
     def name(self, x, y, words, cls="s", sides=(1, -1)):
         """Words beside a point, on one of the sides, where they cover no mark and no other words."""
         x, y, wide = float(self.x(x)), float(self.y(y)), LETTER * len(words) + 2
-        if not (math.isfinite(x) and math.isfinite(y)):
-            return
         spots = [(x + 9 if side > 0 else x - 9 - wide, y + 4 + 6 * step) for step in (0, 2, -2, 3, -3, 4, -4, 6, -6, 8)
                  for side in sides]
         boxes = [(left, low - 10, left + wide, low + 2) for left, low in spots]
@@ -159,7 +154,8 @@ class Axes:
         self.say(free[0], free[3] - 2, words, cls + " h")
 
     def spots(self, *points):
-        """Marks, then names that cover none of them: (x, y, name, its class, and what `sign` takes)."""
+        """Marks, then names that cover none of them: (x, y, name, its class, look), where x and y are known."""
+        points = [point for point in points if np.isfinite(point[:2]).all()]
         for x, y, _, _, *look in points:
             self.mark(x, y, *look)
         for x, y, name, cls, *_ in points:
@@ -425,7 +421,7 @@ def front(found, designs, names, result, size=SIZE, odds=None, picked=None, fade
     low, high = (0.0, 1.0) if names[2] == "odds" else span(colour, room=0)
     told = [*((*label(name), values) for name, values in zip(names, columns)),
             *((v.label, v.unit if v.unit != "1" else "", getattr(designs, name)) for name, v in DESIGN_SPACE.items())]
-    for i in range(len(x)):
+    for i in np.flatnonzero(np.isfinite(x) & np.isfinite(y)).tolist():
         said = [f"{words} {values[i]:.4g} {unit}".strip() for words, unit, values in told if values[i] == values[i]]
         axes.mark(x[i], y[i], cls="rdk-pick", size=6, inside=f"<title>{', '.join(said)}</title>",
                   fill=shade((colour[i] - low) / (high - low)) if colour[i] == colour[i] else "transparent",
