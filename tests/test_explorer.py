@@ -21,7 +21,7 @@ from rdk import catalog, explain, pictures
 from rdk.design import Problem
 from rdk.explorer import Explorer, answers, page
 from rdk.explorer import app as explorer_module
-from rdk.explorer.inputs import DESIGN, METRICS, MISSION, NUMBERS, OWN, SOIL, VIEWS
+from rdk.explorer.inputs import DESIGN, MENUS, METRICS, MISSION, NUMBERS, OWN, SOIL, VIEWS
 from rdk.rover_picture import contact, failing, rover_picture, wheel_picture
 from rdk.sampling import Attribution
 
@@ -116,8 +116,8 @@ def test_every_view_shows_a_picture_or_says_why_not(explorer, view):
     ("sweep_first", "sweep"), ("sweep_second", "sweep"), ("sweep_metric", "sweep")])
 def test_every_choice_of_a_menu(explorer, name, view):
     explorer.set(view=view)
-    for choice in explorer.menus[name]:
-        events(explorer, ["choose", name, str(choice)])
+    for choice in MENUS[name]:
+        events(explorer, ["set", name, str(choice)])
         assert_current(explorer)
         assert explorer.state[name] == choice or choice == OWN
         assert told(explorer)["c"][name] == str(explorer.state[name])
@@ -175,7 +175,7 @@ def test_positions_and_values_of_sliders_agree():
     ("traverse_limit_km", "none", math.inf, ""), ("traverse_limit_km", "500", 500, ""),
     ("duty_cycle", "12,5", 0.125, "")])
 def test_typed_numbers_are_understood_and_what_is_done_to_them_is_said(explorer, name, text, value, said):
-    events(explorer, ["type", name, text])
+    events(explorer, ["set", name, text])
     assert explorer.state[name] == pytest.approx(value, rel=1e-12)
     assert said in shown(explorer, "drawer") and 'role="alert"' not in explorer.parts["drawer"].value
     assert_current(explorer)
@@ -184,7 +184,7 @@ def test_typed_numbers_are_understood_and_what_is_done_to_them_is_said(explorer,
 @pytest.mark.parametrize("text", ["", "wide", "1.2.3", "1,234,567", "5_0", "nan", "0x10", "<b>"])
 def test_a_typed_text_that_is_no_number_is_refused_in_words(explorer, text):
     before = explorer.design
-    events(explorer, ["type", "wheel_radius_m", text])
+    events(explorer, ["set", "wheel_radius_m", text])
     assert "is no number; allowed are 50 to 200 mm" in shown(explorer, "drawer")
     assert 'role="alert"' in explorer.parts["drawer"].value
     assert explorer.design == before
@@ -256,7 +256,7 @@ def test_the_array_follows_the_noon_sun_until_it_is_turned(explorer):
 def test_events_that_were_heard_are_not_acted_on_again(explorer):
     events(explorer, ["slide", "wheel_radius_m", 70])
     heard = explorer._heard
-    explorer.bridge.value = json.dumps([[heard, "do", "undo"], [heard + 1, "type", "wheel_width_m", "90"]])
+    explorer.bridge.value = json.dumps([[heard, "do", "undo"], [heard + 1, "set", "wheel_width_m", "90"]])
     explorer.settle()
     assert (explorer.design.wheel_radius_m, explorer.design.wheel_width_m) == (0.12, 0.09)
     events(explorer, ["size", 390, 320])
@@ -294,8 +294,8 @@ def test_undo_redo_and_reset(explorer):
 
 
 def test_what_changes_nothing_is_no_step(explorer):
-    events(explorer, ["type", "wheel_radius_m", "130"])
-    events(explorer, ["type", "wheel_radius_m", "130"])  # a box that is left says its number again
+    events(explorer, ["set", "wheel_radius_m", "130"])
+    events(explorer, ["set", "wheel_radius_m", "130"])  # a box that is left says its number again
     explorer.set(mission=MARE, wheel_count=4)
     gain = explorer.result.total_mass_kg - rdk.evaluate(rdk.rover("Rashid-1"), explorer.scenario).total_mass_kg
     assert len(explorer._past) == 1 and f"{gain:+.1f}" in shown(explorer)
@@ -369,8 +369,8 @@ def test_a_link_brings_everything_back(explorer):
 
 def test_site_and_date_bring_the_real_sun_and_go_everywhere(explorer):
     explorer.set(mission=POLAR)
-    events(explorer, ["choose", "site", "shackleton_rim"], ["choose", "site_height_m", "10"],
-           ["type", "start_utc", " 2026-11-26T12:00 "])
+    events(explorer, ["set", "site", "shackleton_rim"], ["set", "site_height_m", "10"],
+           ["set", "start_utc", " 2026-11-26T12:00 "])
     assert_current(explorer)
     place = catalog.skyline_sites()["shackleton_rim"]
     wanted = rdk.scenario(POLAR).replace(
@@ -384,9 +384,9 @@ def test_site_and_date_bring_the_real_sun_and_go_everywhere(explorer):
     exec(explorer.python(), space)
     assert space["result"].range_km == explorer.result.range_km and "skyline('shackleton_rim', 10)" in explorer.python()
     assert space["mission"].skyline == wanted.skyline
-    events(explorer, ["type", "start_utc", "next week"])
+    events(explorer, ["set", "start_utc", "next week"])
     assert "date must be UTC in ISO form" in shown(explorer, "drawer") and explorer.scenario == wanted
-    events(explorer, ["type", "latitude_deg", "-80"])
+    events(explorer, ["set", "latitude_deg", "-80"])
     assert explorer.state["site"] == "none" and "site set to none" in shown(explorer, "drawer")
     explorer.undo()
     assert explorer.scenario == wanted
@@ -685,7 +685,7 @@ def test_two_explorers_do_not_disturb_each_other(explorer):
 def test_a_random_walk_keeps_working_and_keeps_no_memory(explorer):
     chance = random.Random(1)
     names = [name for name in NUMBERS if name not in ("population", "generations", "seed")]
-    menus = [name for name in explorer.menus if name not in ("view", "live")]
+    menus = [name for name in MENUS if name not in ("view", "live")]
     texts = ["12", "0,5", "1e3", "1e999", "none", "wide", "", "-4", "−3", "<b>", "nan", "2026-11-26T12:00"]
 
     def walk(moves, views):
@@ -693,18 +693,18 @@ def test_a_random_walk_keeps_working_and_keeps_no_memory(explorer):
             kind = chance.random()
             if kind < 0.25:
                 name = chance.choice(menus)
-                event = ["choose", name, str(chance.choice(list(explorer.menus[name])))]
+                event = ["set", name, str(chance.choice(list(MENUS[name])))]
             elif kind < 0.35:
                 event = ["do", chance.choice(["undo", "redo", "reset", "reset:slope_deg", "pin", "unpin:0", "use:2",
                                               "differences", "python", "solve", "point:1", "save:design.csv"])]
             elif kind < 0.45:
-                event = ["type", chance.choice([*names, "start_utc"]), chance.choice(texts)]
+                event = ["set", chance.choice([*names, "start_utc"]), chance.choice(texts)]
             elif kind < 0.48:
                 event = ["size", chance.choice([300, 640, 1400]), 420]
             else:
                 name = chance.choice(names)
                 event = ["slide", name, chance.randrange(NUMBERS[name].positions + 1)]
-            events(explorer, event, *([["choose", "view", chance.choice(views)]] if chance.random() < 0.3 else []))
+            events(explorer, event, *([["set", "view", chance.choice(views)]] if chance.random() < 0.3 else []))
             if chance.random() < 0.2:
                 assert_current(explorer)
         assert_current(explorer)

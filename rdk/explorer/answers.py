@@ -46,7 +46,6 @@ def fits(front, scenario, model):
 # ---- readings -------------------------------------------------------------------------------------------------
 
 def cards(a):
-    """The five readings."""
     result, spans, drawn = a.result, a.spans, []
     far, route, heaviest = (a.now[name] for name in ("minimum_range_km", "traverse_limit_km", "maximum_mass_kg"))
     slope = max(a.scenario.slope_deg, a.now["minimum_slope_deg"])
@@ -135,7 +134,6 @@ def rovers(a, *names):
 
 
 def why(a, size):
-    """What each variable contributes to the difference from a reference."""
     metric = a.now["why_metric"]
     found = a.kept["why"] = attribution(a.design, a.reference, a.scenario, model=a.model, metrics=(metric,),
                                         known=a.kept["why"])
@@ -176,7 +174,6 @@ def band_of(a, stop):
 
 
 def swept(a, size):
-    """A sweep over one field, or a map over two."""
     over, metric = swept_over(a.now), a.now["sweep_metric"]
     fields = {name: NUMBERS[name] for name in over}
     axes = [f.label + (f" ({f.unit})" if f.unit else "") for f in fields.values()]
@@ -207,7 +204,6 @@ def swept(a, size):
 
 
 def front(a, size):
-    """The last front, one metric against another."""
     front = a.front
     if front is None:
         return (f'<div style="padding:60px 20px;text-align:center;width:{size[0] - 60}px">No front yet: designs that '

@@ -25,7 +25,7 @@ from ..sampling import intervals
 from ..sizing import size
 from ..tradespace import pareto_front
 from . import answers, page
-from .inputs import DESIGN, METRICS, NUMBERS, ODDS, check, label, place
+from .inputs import DESIGN, MENUS, METRICS, NUMBERS, ODDS, check, label, place
 from .state import State
 
 LIVE = 40, 24                                            # population and generations of a live front from nothing
@@ -52,8 +52,6 @@ class Explorer(State):
 
     Attributes
     ----------
-    design, scenario, model, state : Design, Scenario, Model, dict
-        What the inputs show; `state` has every input by its name, as `set` takes them.
     result, intervals, binding : Performance, Intervals, Binding
         What the readings show, once settled.
     front : Front or None
@@ -81,7 +79,7 @@ class Explorer(State):
         self._app = os.environ.get("SERVER_SOFTWARE", "").startswith("voila")
         super().__init__(catalog.rover(rover) if isinstance(rover, str) else rover,
                          catalog.scenario(scenario) if isinstance(scenario, str) else scenario, model)
-        fixed = {"top": page.top(self._app), "left": page.left(self.menus), "views": page.views(self.menus)}
+        fixed = {"top": page.top(self._app), "left": page.left(), "views": page.views()}
         self.parts = {name: W.HTML(fixed.get(name, "")).add_class(f"rdk-{name}") for name in
                       ("top", "drawer", "left", "verdict", "views", "picture", "side", "tray", "data")}
         self.bridge = W.Text(layout=W.Layout(display="none")).add_class("rdk-bridge")
@@ -96,7 +94,7 @@ class Explorer(State):
     # ---- the page ---------------------------------------------------------------------------------------------
 
     def _hear(self, change):
-        """Act on the page's events: slide, type, choose, do, size."""
+        """Act on the page's events: slide, set, do, size."""
         with self._lock:
             for number, kind, *arguments in json.loads(change.new):
                 if number > self._heard:
@@ -114,13 +112,11 @@ class Explorer(State):
             with self._step((name, self._heard)):        # events count milliseconds
                 self._assign(name, NUMBERS[name].at(position))
 
-    def _on_type(self, name, text):
+    def _on_set(self, name, text):
         value, said = NUMBERS[name].read(text) if name in NUMBERS else (text, "")
         self.set(**{name: value})
         if said:
             self._notice = ("status", said)
-
-    _on_choose = _on_type
 
     def _on_size(self, width, height):
         self._size = min(max(int(width), 300), 2400), min(max(int(height), 260), 800)
@@ -140,7 +136,6 @@ class Explorer(State):
             self._reading, self._drawer = verb, self._read(verb, about)
 
     def _raise(self, name):
-        """A lever: one input raised by a tenth."""
         field = NUMBERS[name]
         value, said = field.cut(float(f"{1.1 * self.state[name]:.6g}"))
         self.set(**{name: value})
@@ -295,7 +290,7 @@ class Explorer(State):
                      "share": self.link, "summary": f"{place(m.latitude_deg)}, {m.duration_earth_days:g} days from "
                      f"{m.start_utc or 'sunrise'}, {m.slope_deg:g}° in {m.soil.name}; drives {100 * m.duty_cycle:g} % "
                      f"of the time, route {route}."}
-            told = {"ack": heard, "v": numbers, "c": {name: str(now[name]) for name in (*self.menus, "start_utc")},
+            told = {"ack": heard, "v": numbers, "c": {name: str(now[name]) for name in (*MENUS, "start_utc")},
                     "t": texts, "p": (*self._progress, running), "busy": busy,
                     "off": {"undo": not self._past, "redo": not self._future, "run": running, "lightest": running,
                             "cancel": not running}}
@@ -376,7 +371,7 @@ class Explorer(State):
 
     def solve(self, name):
         """Move one design variable to the nearest value that meets the demands; a notice says what came of it."""
-        value, said = answers.solved(*self._now, check("solve_variable", name, self.menus))
+        value, said = answers.solved(*self._now, check("solve_variable", name))
         if value is not None:
             self.set(**{name: value})
         self._notice = ("alert" if value is None else "status", said)

@@ -111,31 +111,7 @@ def title(name):
 
 
 def place(latitude_deg):
-    """A latitude in words."""
     return "equator" if latitude_deg == 0 else f"{abs(latitude_deg):.4g}° {'S' if latitude_deg < 0 else 'N'}"
-
-
-def choices():
-    """The menus: name -> value -> words."""
-    def same(*names):
-        return {name: name for name in names}
-
-    swept = {name: NUMBERS[name].label for name in (*DESIGN, *MISSION, *SOIL, *COEFFICIENTS)
-             if name != "duration_earth_days"}
-    metrics = {name: label(name)[0] for name in METRICS}
-    sites = {name: name.replace("_", " ") for name in catalog.skyline_sites()}
-    return {"rover": same(*catalog.rover_names(), OWN),
-            "mission": {name: title(name) for name in (*catalog.scenario_names(), OWN)},
-            "soil": same(*catalog.soil_names(), OWN), "site": {NONE: "none: level horizon", OWN: OWN, **sites},
-            "site_height_m": {1: "1 m up", 2: "2 m up", 10: "10 m up"},
-            "wheel_count": {4: "4 wheels", 6: "6 wheels"}, "survive": {0: "may freeze", 1: "must survive"},
-            "preset": {"paper": "as in the paper", "engineering": "engineering"}, "view": VIEWS,
-            "baseline": same(START, *catalog.rover_names()), "why_metric": metrics,
-            "sweep_first": swept, "sweep_second": {"": "nothing else"} | swept, "sweep_metric": metrics,
-            "front_x": metrics, "front_y": metrics, "front_colour": metrics | {ODDS: label(ODDS)[0]},
-            "live": {False: "off", True: "on"},
-            "solve_variable": {name: field.label for name, field in DESIGN.items()},
-            **dict.fromkeys(GOALS, same("max", "min", "ignore"))}
 
 
 def label(name):
@@ -143,13 +119,35 @@ def label(name):
     return (NUMBERS[name].label, NUMBERS[name].unit) if name in NUMBERS else pictures.label(name)
 
 
-def check(name, value, menus):
+def same(*names):
+    return {name: name for name in names}
+
+
+_METRICS = {name: label(name)[0] for name in METRICS}
+_SWEPT = {name: NUMBERS[name].label for name in (*DESIGN, *MISSION, *SOIL, *COEFFICIENTS)
+          if name != "duration_earth_days"}
+MENUS = {  # name -> value -> words
+    "rover": same(*catalog.rover_names(), OWN),
+    "mission": {name: title(name) for name in (*catalog.scenario_names(), OWN)},
+    "soil": same(*catalog.soil_names(), OWN),
+    "site": {NONE: "none: level horizon", OWN: OWN} | {n: n.replace("_", " ") for n in catalog.skyline_sites()},
+    "site_height_m": {1: "1 m up", 2: "2 m up", 10: "10 m up"},
+    "wheel_count": {4: "4 wheels", 6: "6 wheels"}, "survive": {0: "may freeze", 1: "must survive"},
+    "preset": {"paper": "as in the paper", "engineering": "engineering"}, "view": VIEWS,
+    "baseline": same(START, *catalog.rover_names()), "why_metric": _METRICS,
+    "sweep_first": _SWEPT, "sweep_second": {"": "nothing else"} | _SWEPT, "sweep_metric": _METRICS,
+    "front_x": _METRICS, "front_y": _METRICS, "front_colour": _METRICS | {ODDS: label(ODDS)[0]},
+    "live": {False: "once", True: "live"}, "solve_variable": {name: field.label for name, field in DESIGN.items()},
+    **dict.fromkeys(GOALS, same("max", "min", "ignore"))}
+
+
+def check(name, value):
     """The value of an input set from Python, or a ValueError that says what is allowed."""
-    if name in menus:
+    if name in MENUS:
         single = isinstance(value, (str, int, float, np.generic))
-        known = [choice for choice in menus[name] if single and (choice == value or str(choice) == value)]
+        known = [choice for choice in MENUS[name] if single and (choice == value or str(choice) == value)]
         if not known:
-            raise ValueError(f"{name} must be one of {', '.join(map(str, menus[name]))}; got {value!r}")
+            raise ValueError(f"{name} must be one of {', '.join(map(str, MENUS[name]))}; got {value!r}")
         return known[0]
     if name == "start_utc":
         text = str(value).strip()
@@ -158,7 +156,7 @@ def check(name, value, menus):
         julian_date(text)                                # raises where it is no date
         return text
     if name not in NUMBERS:
-        raise _fields.unknown("no input", name, [*NUMBERS, *menus, "start_utc"])
+        raise _fields.unknown("no input", name, [*NUMBERS, *MENUS, "start_utc"])
     field = NUMBERS[name]
     return _fields.check(name, value, field.low, math.inf if field.endless else field.high, whole=field.whole,
                          infinite=field.endless, scalar=True)

@@ -56,15 +56,14 @@ root.addEventListener('focusout', e => { delete e.target.dataset.typing; });
 root.addEventListener('change', e => { const i = e.target; delete i.dataset.typing;
     if (i.type === 'file') { const file = i.files[0]; if (file) file.text().then(text => {
         send('do', 'load', file.name, text); i.value = ''; }); }
-    else if (i.matches('.rdk-box')) send('type', i.dataset.in, i.value);
-    else if (i.matches('select')) send('choose', i.dataset.in, i.value); });
+    else if (i.matches('.rdk-box, select')) send('set', i.dataset.in, i.value); });
 root.addEventListener('click', e => {
     all(':is(.rdk-help, .rdk-bar details, .rdk-controls .rdk-more)[open]').forEach(d => {
         if (!d.contains(e.target) || e.target.closest('.rdk-bar button')) d.open = false; });
     const b = e.target.closest('[data-do],[data-name],[data-view],[data-tab],[data-js]'); if (!b) return;
     if (b.dataset.do) { pressed = b.dataset.do; send('do', b.dataset.do); }
-    else if (b.dataset.name) send('choose', b.dataset.name, b.dataset.value);
-    else if (b.dataset.view) { choose('view', b.dataset.view); send('choose', 'view', b.dataset.view); }
+    else if (b.dataset.name) send('set', b.dataset.name, b.dataset.value);
+    else if (b.dataset.view) { choose('view', b.dataset.view); send('set', 'view', b.dataset.view); }
     else if (b.dataset.tab) { tab = b.dataset.tab; pages(); }
     else if (b.dataset.js === 'open') one('[type=file]').click();
     else if (b.dataset.js === 'skip') { const v = one('.rdk-say1'); v.tabIndex = -1; v.focus(); }
@@ -75,8 +74,8 @@ root.addEventListener('keydown', e => { const t = e.target;
         d.querySelector('summary').focus(); } });
     if (t.matches('.rdk-box') && e.key === 'Enter') { e.preventDefault();
         t.dispatchEvent(new Event('change', {bubbles: true})); }
-    if (t.matches('.rdk-pick') && (e.key === 'Enter' || e.key === ' ')) { e.preventDefault(); pressed = t.dataset.do;
-        send('do', t.dataset.do); }
+    if (t.matches('.rdk-pick') && (e.key === 'Enter' || e.key === ' ')) { e.preventDefault();
+        t.dispatchEvent(new Event('click', {bubbles: true})); }
     const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[e.key];
     if (step && t.matches('[role=tab],.rdk-pick')) { e.preventDefault();
         const row = t.matches('.rdk-pick') ? all('.rdk-pick') : [...t.parentNode.children];

@@ -8,7 +8,7 @@ import math
 from html import escape
 from pathlib import Path
 
-from .inputs import NUMBERS, VIEWS
+from .inputs import MENUS, NUMBERS, VIEWS
 
 STYLE, SCRIPT = ((Path(__file__).parent / name).read_text(encoding="utf-8") for name in ("page.css", "page.js"))
 SAVES = {"design.json": "Design (json)", "design.csv": "Design (csv)", "front.json": "Front (json)",
@@ -18,7 +18,6 @@ STATUS = {"met": "✓ met", "missed": "✗ missed", "risk": "! at risk", "none":
 
 
 def button(action, words, more=""):
-    """A button that asks Python for something."""
     return f'<button data-do="{escape(action)}" {more}>{words}</button>'
 
 
@@ -58,55 +57,50 @@ def group(heading):
 
 
 def more(heading, before=""):
-    """A group that is folded away."""
     return f'<details class="rdk-more"><summary>more: {heading}</summary>{before}{group(heading)}</details>'
 
 
-def menu(name, words, options):
-    """A choice with its label."""
+def menu(name, words):
     items = "".join(f'<option value="{escape(str(value))}">{escape(str(text))}</option>'
-                    for value, text in options.items())
+                    for value, text in MENUS[name].items())
     said, unseen = (f"<span>{words}</span>", "") if words else ("", f'aria-label="{name}"')
     return f'<label class="rdk-menu">{said}<select data-in="{name}" {unseen}>{items}</select></label>'
 
 
-def segments(name, options, words):
-    """A choice among two, as buttons."""
+def segments(name, words):
     items = "".join(f'<button data-name="{name}" data-value="{value}">{text}</button>'
-                    for value, text in options.items())
+                    for value, text in MENUS[name].items())
     return f'<div class="rdk-seg" role="group" aria-label="{words}">{items}</div>'
 
 
-def left(menus):
-    """The inputs: one page for the rover, one for the mission."""
+def left():
     when = """<label class="rdk-menu"><span>start (UTC)</span><input class="rdk-box" autocomplete="off"
         data-in="start_utc"></label><p class="rdk-say">A site sets latitude and skyline. A start such as
         2026-11-26T12:00 brings the real sun; “none” the paper's, which rises at the start.</p>"""
     return f"""<nav role="tablist" aria-label="inputs"><button role="tab" data-tab="rover">Rover</button>
         <button role="tab" data-tab="mission"><span data-text="mission"></span></button></nav>
-        <section data-page="rover" aria-label="rover">{menu("rover", "", menus["rover"])}{group("Wheels")}
-        {segments("wheel_count", menus["wheel_count"], "wheels")}{group("Body")}{group("Power")}
-        {more("coefficients of the model", menu("preset", "Model", menus["preset"]))}</section>
-        <section data-page="mission" aria-label="mission" hidden>{menu("mission", "", menus["mission"])}
-        <p class="rdk-say" data-text="summary"></p>{group("Site")}{menu("soil", "soil", menus["soil"])}
-        {group("Work")}{group("Demands")}{segments("survive", menus["survive"], "survival of heat and cold")}
+        <section data-page="rover" aria-label="rover">{menu("rover", "")}{group("Wheels")}
+        {segments("wheel_count", "wheels")}{group("Body")}{group("Power")}
+        {more("coefficients of the model", menu("preset", "Model"))}</section>
+        <section data-page="mission" aria-label="mission" hidden>{menu("mission", "")}
+        <p class="rdk-say" data-text="summary"></p>{group("Site")}{menu("soil", "soil")}
+        {group("Work")}{group("Demands")}{segments("survive", "survival of heat and cold")}
         {more("array, speed limit")}
-        {more("site and date", menu("site", "site", menus["site"])
-              + menu("site_height_m", "array", menus["site_height_m"]) + when)}
+        {more("site and date", menu("site", "site")
+              + menu("site_height_m", "array") + when)}
         {more("numbers of the soil")}</section>"""
 
 
-def views(menus):
-    """The tabs of the pictures, and what some of them can be asked."""
+def views():
     def ask(**names):
-        return "".join(menu(name, words, menus[name]) for name, words in names.items())
+        return "".join(menu(name, words) for name, words in names.items())
 
     run = button("run", "Run search", 'class="rdk-main"') + button("cancel", "Cancel")
     rest = (f'<div class="rdk-controls">{ask(solve_variable="solve")}{button("solve", "for the demands")}</div>'
             f'<div class="rdk-controls">{ask(range_goal="range", mass_goal="mass", slope_goal="slope")}</div>')
     panels = {"why": ask(why_metric="metric", baseline="against"),
               "sweep": ask(sweep_metric="metric", sweep_first="along", sweep_second="and"),
-              "optimise": f"""{run}{segments("live", {"False": "once", "True": "live"}, "search")}
+              "optimise": f"""{run}{segments("live", "search")}
         {button("lightest", "Lightest rover for the demands", 'title="with the demands of the mission page"')}
         {ask(front_x="across", front_y="up", front_colour="colour")}
         <details class="rdk-more"><summary>more: solve for the demands, goals, size of the search</summary>
@@ -137,7 +131,6 @@ def card(title, value, unit, status, note, change, at, interval, need, old):
     low, high = min(known, default=0), max(known, default=0)
 
     def share(v):
-        """Where a value stands in the gauge."""
         return f"{100 * ((v - low) / (high - low or 1) + 0.06) / 1.12:.1f}%"
 
     gauge = ""

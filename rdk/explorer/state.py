@@ -14,7 +14,7 @@ from ..report import report
 from ..sampling import replaced, single
 from ..tradespace import Front
 from . import answers
-from .inputs import COEFFICIENTS, DEMANDS, DESIGN, GOALS, NONE, NUMBERS, OWN, SKY, check, choices, title
+from .inputs import COEFFICIENTS, DEMANDS, DESIGN, GOALS, MENUS, NONE, NUMBERS, OWN, SKY, check, title
 from .page import PINS, SAVES
 
 PAST = 200                                               # states that undo remembers
@@ -32,8 +32,7 @@ class State:
 
     def __init__(self, design, mission, model):
         single(rover=design, scenario=mission, model=model)
-        self.menus, self.front, self.result = choices(), None, None
-        self._recipe = self._before = None
+        self.front = self.result = self._recipe = self._before = None
         self._lock = threading.RLock()
         self._past, self._future, self._drag, self._pins = [], [], ("", 0), []
         self._notice = ("", "")
@@ -108,7 +107,7 @@ class State:
 
     def set(self, **values):
         """Set inputs by name, such as `slope_deg=20, soil="fjs-1", view="why"`; a ValueError says what is allowed."""
-        checked = {name: check(name, value, self.menus) for name, value in values.items()}
+        checked = {name: check(name, value) for name, value in values.items()}
         with self._step():
             for name, value in checked.items():
                 self._assign(name, value)
@@ -239,10 +238,10 @@ class State:
         found, wrong = dict(parse_qsl(text.strip().lstrip("?"))), []
         with self._step():
             for name in dict.fromkeys([*FIRST, *found]):
-                if name in found and (name in NUMBERS or name in self.menus or name in SKY):
+                if name in found and (name in NUMBERS or name in MENUS or name in SKY):
                     try:
                         value = float(found[name]) if name in NUMBERS else found[name]
-                        self._assign(name, check(name, value, self.menus))
+                        self._assign(name, check(name, value))
                     except ValueError as error:
                         wrong.append(f"{name}={found[name]}: {error}")
             self._notice = ("alert" if wrong else "status", "; ".join(wrong))
