@@ -1,8 +1,6 @@
 """Words for a result: names and units, what binds a design, which limits it meets, the Python that reproduces it."""
-from __future__ import annotations
-
 import dataclasses
-from typing import NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -22,13 +20,8 @@ WORDS = {"total_mass": "mass", "average_solar_power": "mean sunlight", "final_so
          "thermal_survival": "survival of heat and cold", "energy_balance_speed": "energy-balance speed",
          "feasible": "drives the mission", "odds": "odds of the demands", "growth": "margin", "solar_area": "array",
          "hub_no_load_speed": "hub speed", "peak_wheel_torque": "hub torque"}
-
-
-class Binding(NamedTuple):
-    """What limits a design: a key, one sentence, and what more of each lever would bring."""
-    key: str
-    sentence: str
-    detail: str = ""
+Binding = namedtuple("Binding", "key sentence detail", defaults=[""])
+"""What limits a design: a key, one sentence, and what more of each lever would bring."""
 
 
 def label(name):

@@ -1,16 +1,12 @@
 """Figures in one style that reads without colour: curves and panels for a notebook's cell, and live pictures."""
-from __future__ import annotations
-
 import base64
 import html
 import io
 import threading
 
 import matplotlib.pyplot as plt
-from matplotlib.figure import Figure
 
-from .rover_picture import rover_picture as rover_picture
-from .rover_picture import wheel_picture as wheel_picture
+from .rover_picture import rover_picture as rover_picture, wheel_picture as wheel_picture
 
 BLUE, ORANGE, GREEN, BLACK, GREY = "#0072B2", "#D55E00", "#009E73", "#000000", "#767676"
 COLOURS = (BLUE, ORANGE, GREEN, BLACK)
@@ -80,7 +76,7 @@ def live(draw, *, size=(5.2, 3.6), **sliders):
         with lock:                                       # JupyterLab may call from several threads
             file = io.BytesIO()
             with plt.style.context(STYLE, after_reset=True):         # a person's matplotlibrc stays outside
-                figure = Figure(figsize=size)
+                figure = plt.Figure(figsize=size)
                 box.sentence = draw(figure, **{name: control.value for name, control in controls.items()})
                 figure.savefig(file, format="png", dpi=100)
             box.png, text = base64.b64encode(file.getvalue()).decode(), html.escape(box.sentence)

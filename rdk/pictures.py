@@ -3,8 +3,6 @@
 Each takes numbers in the units shown and a size in pixels, and returns the text of an SVG element whose label says in
 words what it shows. A dot that can be picked is an element of its own, so that what is clicked is what is drawn.
 """
-from __future__ import annotations
-
 import html
 import math
 import re
@@ -371,14 +369,12 @@ def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
     from contourpy import contour_generator
     axes = Axes(size, (float(xs[0]), float(xs[-1])), (float(ys[0]), float(ys[-1])), top=42, right=86)
     low, high = span(grid, room=0)
-    field, edges = contour_generator(xs, ys, np.where(np.isfinite(grid), grid, np.nan).T), np.linspace(low, high, 11)
+    x, y, edges = axes.x(xs), axes.y(ys), np.linspace(low, high, 11)
+    field = contour_generator(x, y, np.where(np.isfinite(grid), grid, np.nan).T)
     outer = edges + np.r_[-1, np.zeros(9), 1] * 1e-9 * max(abs(low), abs(high), 1)
 
-    def drawn(points, close=""):
-        return path(axes.x(points[:, 0]), axes.y(points[:, 1]), close)
-
     def fill(field, a, b, **look):
-        outlines = [drawn(points[i:j], "Z") for points, starts in zip(*field.filled(a, b))
+        outlines = [path(*points[i:j].T, "Z") for points, starts in zip(*field.filled(a, b))
                     for i, j in zip(starts, starts[1:])]
         axes.add("path", "", d="".join(outlines), fill_rule="evenodd", **look)
 
@@ -386,12 +382,12 @@ def contour(x_label, y_label, metric, xs, ys, grid, stalled, here, size=SIZE):
         fill(field, outer[k], outer[k + 1], fill=shade((k + 0.5) / 10))
     if stalled.any():
         axes.parts.append(HATCH)
-        fill(contour_generator(xs, ys, stalled.T.astype(float)), 0.5, 2, **HATCHED)
+        fill(contour_generator(x, y, stalled.T.astype(float)), 0.5, 2, **HATCHED)
     axes.frame(y_label, below=x_label)
     for level in edges[2:-1:2] if np.nanmax(grid) > np.nanmin(grid) else ():
         for points in field.lines(level):
-            axes.add("path", "n", d=drawn(points), stroke="#fff", opacity=0.8)
-            x, y = axes.x(points[len(points) // 2, 0]), axes.y(points[len(points) // 2, 1])
+            axes.add("path", "n", d=path(*points.T), stroke="#fff", opacity=0.8)
+            x, y = points[len(points) // 2]
             if len(points) > 8 and all(abs(x - a) > 24 or abs(y - b) > 12 for a, b in axes.taken):
                 axes.taken.append((x, y))
                 axes.add("text", "s m", f"{level:.3g}", x=x, y=y + 4,

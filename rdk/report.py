@@ -2,8 +2,6 @@
 
 The page embeds its pictures, needs no network and prints on one A4 page.
 """
-from __future__ import annotations
-
 import base64
 import functools
 import html

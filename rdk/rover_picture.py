@@ -1,6 +1,4 @@
 """The rover and its wheel, drawn to scale as SVG: text stays text, colours follow the page, nothing else is needed."""
-from __future__ import annotations
-
 import html
 
 import numpy as np
