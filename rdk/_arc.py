@@ -98,12 +98,10 @@ def _shares(theta_1, s, patch, start, end, nodes, weight):
 
 
 def state(patch, s, load, theta_s):
-    """Pull, torque, entry angle and stress level at slip s; NaN where the wheel sinks to its axle.
-
-    NaN too where braking shear drags a wheel down by more than the normal stress lifts it: no level carries then.
-    """
+    """Pull, torque, entry angle and stress level at slip s; NaN where the wheel sinks to its axle."""
     theta_1 = entry_angle(theta_s, s)
     v, p, t, v_c, p_c, t_c = shares(theta_1, s, patch)
+    # no level carries where braking shear drags a wheel down by more than the normal stress lifts it
     theta_1, v = np.where(v > 0, [theta_1, v], np.nan)
     level = (load - v_c) / v                                             # vertical balance
     return level * p + p_c, level * t + t_c, theta_1, level

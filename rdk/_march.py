@@ -83,10 +83,7 @@ def _sun(time_h, lane):
 
 
 def _incidence(time_h, lane):
-    """cos(i) at times (down) for lanes (across), times the share of the disc above the skyline where there is one.
-
-    One column where the lanes share sun and panel.
-    """
+    """cos(i) at times (down) for lanes (across) or, where they share sun and panel, one column; 0 behind a skyline."""
     hour_angle, declination = _sun(time_h, lane)
     lit = None
     if lane.skyline is not None:

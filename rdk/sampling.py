@@ -1,7 +1,4 @@
-"""Chosen points of the trade space: random designs, sweeps, Monte-Carlo intervals and Shapley attribution.
-
-Each study is one call of `evaluate` on a population built for it.
-"""
+"""Chosen points of the trade space: random designs, sweeps, Monte-Carlo intervals and Shapley attribution."""
 from __future__ import annotations
 
 import dataclasses
@@ -268,13 +265,6 @@ def intervals(design: Design, scenario: Scenario, *, draws: int = DRAWS, seed: i
     in a draw (a buried wheel) are left out of its percentiles. One design or a flat population; every design sees the
     same draws, and the same seed gives the same bits. `level` is the probability inside the interval; the `table` takes
     the place of `data/uncertainties.csv`.
-
-    Examples
-    --------
-    >>> import rdk
-    >>> found = intervals(rdk.rover("Rashid-1"), rdk.scenario("equatorial_mare_traverse"))
-    >>> bool(0 < found.share([("range_km", ">=", 30), ("slope_capability_deg", ">=", 15)]) < 1)
-    True
     """
     require(design=(design, Design))
     single(scenario=scenario, model=model)

@@ -9,9 +9,6 @@ multi-pass. Checked against soft-soil tests only; on firm soil it sinks too far.
 cohesion (10 kPa) and small K (below 3 mm) the integrals are good to 0.4 % of the load, and more than one entry angle
 may carry it: do not trust the pull there.
 
-How it is solved. Entry angle, slip and slope capability are Newton iterations over all lanes at once, on the exact
-derivatives of the forces, with a bracket to fall back on.
-
 Arrays broadcast; a float comes back where every input is one.
 """
 from dataclasses import dataclass, fields

@@ -164,7 +164,8 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
                  warn: bool = True) -> Front:
     """Pareto front of a mission by NSGA-II on the evaluator itself.
 
-    pymoo's NSGA-II with the paper's operators: simulated binary crossover (0.9, eta 15), polynomial mutation (0.9
+    pymoo's NSGA-II (Deb et al. 2002, doi:10.1109/4235.996017; Blank & Deb 2020, doi:10.1109/ACCESS.2020.2990567) with
+    the paper's operators: simulated binary crossover (0.9, eta 15), polynomial mutation (0.9
     per individual, 1/11 per gene, eta 20), binary tournament, duplicates removed. Where no design meets the
     constraints the front is empty, with a message and, if `warn`, a UserWarning.
 
@@ -189,10 +190,6 @@ def pareto_front(scenario: Scenario, *, population: int | None = None, generatio
         Called with a `Progress` after each generation; when it returns True the search stops with the front so far.
     bounds : dict, optional
         As for `sampling.random_designs`.
-
-    References
-    ----------
-    Deb et al. (2002), doi:10.1109/4235.996017; Blank & Deb (2020), doi:10.1109/ACCESS.2020.2990567.
     """
     population, generations, until = budget(population, generations)
     scenario, problem = posed(scenario, objectives, constraints, seed)
