@@ -113,9 +113,8 @@ def mass_intervals(*, draws: int = DRAWS, seed: int = 0, level: float = 0.9, fix
         known += ~np.isnan(own)
     coefficients = inputs_at(points[:, len(GROWING) + 2:], catalog.scenario("mare_micro"), model=model, table=table)
     torque = anchor_torque_nm(mass, sizes["wheel_count"], sizes["wheel_radius_m"])       # the paper's rule
-    total = mass_breakdown(**sizes, peak_wheel_torque_nm=torque, **{
-        name: coefficients[name][:, None] if name in coefficients else getattr(model, name)
-        for name in MASS_COEFFICIENTS}).total_kg
+    changed = model.replace(**{name: value[:, None] for name, value in coefficients.items()})
+    total = mass_breakdown(**sizes, peak_wheel_torque_nm=torque, coefficients=changed).total_kg
     low, median, high = np.quantile(total, [(1 - level) / 2, 0.5, (1 + level) / 2], axis=0)
     return pd.DataFrame(dict(
         rover=rovers, in_class=(mass >= 5) & (mass <= 50),

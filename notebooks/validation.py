@@ -13,7 +13,7 @@ from rdk import catalog, power
 from rdk._fields import check, require, unknown
 from rdk.design import DESIGN_SPACE, Model, single
 from rdk.mass import MassBreakdown, mass_breakdown
-from rdk.mission import MASS_COEFFICIENTS, evaluate
+from rdk.mission import evaluate
 from rdk.terramechanics import Soil, Wheel, wheel_forces
 
 
@@ -158,8 +158,7 @@ def published_masses(model: Model = Model()) -> pd.DataFrame:
     anchored = anchor_torque_nm(rovers.published_mass_kg, rovers.wheel_count, rovers.wheel_radius_m)
     rovers["peak_wheel_torque_nm"] = rovers.peak_wheel_torque_nm.fillna(anchored)
     sizes = [name for name in (*DESIGN_SPACE, "payload_mass_kg") if name != "wheelbase_m"]
-    mass = mass_breakdown(**{name: rovers[name].to_numpy(float) for name in sizes},
-                          **{name: getattr(model, name) for name in MASS_COEFFICIENTS})
+    mass = mass_breakdown(**{name: rovers[name].to_numpy(float) for name in sizes}, coefficients=model)
     table = rovers[["rover", "in_class", "wheel_count", "published_mass_kg"]].copy()
     table["predicted_mass_kg"] = mass.total_kg
     table["error_pct"] = error_pct(mass.total_kg, rovers.published_mass_kg)

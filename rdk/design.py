@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ._fields import Record, check, described, in_rows, number, require, together
+from .mass import MassCoefficients
 from .sky import Skyline, julian_date
 from .terramechanics import KernelOptions, Soil, Wheel
 
@@ -174,11 +175,11 @@ class Scenario(Record):
 
 
 @dataclass(frozen=True)
-class Model(KernelOptions):
+class Model(MassCoefficients, KernelOptions):
     """Every coefficient of the models, with the paper's values as defaults; each a number or an array.
 
-    `data/constants.csv` gives unit, origin and source of each, those of `terramechanics.KernelOptions` included. Pass a
-    changed copy to `evaluate`: `evaluate(design, scenario, model=Model(drivetrain_efficiency=0.7))`.
+    `data/constants.csv` gives unit, origin and source of each, those of `terramechanics.KernelOptions` and
+    `mass.MassCoefficients` included. Pass a changed copy to `evaluate`, as `model=Model(drivetrain_efficiency=0.7)`.
     """
     example = "rdk.Model()"
 
@@ -188,26 +189,8 @@ class Model(KernelOptions):
     slope_capability_slip: float = number(-1, 1, default=0.6)
     slope_capability_limit_deg: float = number(0, below=90, default=35.0)
     gravity_m_s2: float = number(above=0, default=1.625)
-    # mass
-    wheel_areal_density_kg_m2: float = number(0, default=8.0)
-    grouser_thickness_m: float = number(0, default=0.002)
-    grouser_density_kg_m3: float = number(0, default=2700.0)
-    wheel_web_factor: float = number(0, default=0.0)
-    motor_base_mass_kg: float = number(0, default=0.15)
-    motor_mass_per_torque_kg_nm: float = number(0, default=0.1)
-    solar_areal_density_kg_m2: float = number(0, default=2.5)
-    battery_specific_energy_wh_kg: float = number(above=0, default=120.0)
-    avionics_base_mass_kg: float = number(0, default=0.3)
-    avionics_mass_per_power_kg_w: float = number(0, default=0.05)
-    linkage_base_mass_kg: float = number(0, default=0.5)
-    linkage_chassis_fraction: float = number(0, default=0.08)
-    frame_mass_kg_m2: float = number(0, default=0.0)
-    track_ratio: float = number(above=0, default=0.9)
-    envelope_density_kg_m3: float = number(above=0, default=145.0)
-    harness_fraction: float = number(0, default=0.08)
-    thermal_control_fraction: float = number(0, default=0.05)
-    growth_fraction: float = number(0, default=0.2)
     # mobility
+    envelope_density_kg_m3: float = number(above=0, default=145.0)
     rigid_obstacle_ratio: float = number(0, default=0.5)
     rocker_bogie_obstacle_ratio: float = number(0, default=1.25)
     drivetrain_efficiency: float = number(above=0, maximum=1, default=0.8)

@@ -9,7 +9,29 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._fields import Real, Record
+from ._fields import Real, Record, number
+
+
+@dataclass(frozen=True)
+class MassCoefficients(Record):
+    """The coefficients of the line items, and part of `Model`; the defaults are those of the paper's release."""
+    wheel_areal_density_kg_m2: float = number(0, default=8.0)
+    grouser_thickness_m: float = number(0, default=0.002)
+    grouser_density_kg_m3: float = number(0, default=2700.0)
+    motor_base_mass_kg: float = number(0, default=0.15)
+    motor_mass_per_torque_kg_nm: float = number(0, default=0.1)
+    solar_areal_density_kg_m2: float = number(0, default=2.5)
+    battery_specific_energy_wh_kg: float = number(above=0, default=120.0)
+    avionics_base_mass_kg: float = number(0, default=0.3)
+    avionics_mass_per_power_kg_w: float = number(0, default=0.05)
+    linkage_base_mass_kg: float = number(0, default=0.5)
+    linkage_chassis_fraction: float = number(0, default=0.08)
+    harness_fraction: float = number(0, default=0.08)
+    thermal_control_fraction: float = number(0, default=0.05)
+    growth_fraction: float = number(0, default=0.2)
+    wheel_web_factor: float = number(0, default=0.0)
+    track_ratio: float = number(above=0, default=0.9)
+    frame_mass_kg_m2: float = number(0, default=0.0)
 
 
 @dataclass(frozen=True)
@@ -37,18 +59,11 @@ class MassBreakdown(Record):
 def mass_breakdown(
         *, wheel_radius_m: Real, wheel_width_m: Real, grouser_height_m: Real, grouser_count: Real, wheel_count: Real,
         chassis_mass_kg: Real, solar_area_m2: Real, battery_capacity_wh: Real, avionics_power_w: Real,
-        peak_wheel_torque_nm: Real, payload_mass_kg: Real = 0.0, wheel_areal_density_kg_m2: Real = 8.0,
-        grouser_thickness_m: Real = 0.002, grouser_density_kg_m3: Real = 2700.0, motor_base_mass_kg: Real = 0.15,
-        motor_mass_per_torque_kg_nm: Real = 0.1, solar_areal_density_kg_m2: Real = 2.5,
-        battery_specific_energy_wh_kg: Real = 120.0, avionics_base_mass_kg: Real = 0.3,
-        avionics_mass_per_power_kg_w: Real = 0.05, linkage_base_mass_kg: Real = 0.5,
-        linkage_chassis_fraction: Real = 0.08, harness_fraction: Real = 0.08, thermal_control_fraction: Real = 0.05,
-        growth_fraction: Real = 0.2, wheel_web_factor: Real = 0.0, wheelbase_m: Real = 0.0, track_ratio: Real = 0.9,
-        frame_mass_kg_m2: Real = 0.0) -> MassBreakdown:
+        peak_wheel_torque_nm: Real, wheelbase_m: Real = 0.0, payload_mass_kg: Real = 0.0,
+        coefficients: MassCoefficients = MassCoefficients()) -> MassBreakdown:
     """Mass line items and total of a rover, for arguments of any shapes that broadcast.
 
-    Sizes as in `Design`, the hub torque and the grousers those of one wheel; the payload is added after growth. The
-    coefficients' defaults are those of the paper's release (see `data/constants.csv`). Nothing is checked here.
+    Sizes as in `Design`, the hub torque and the grousers those of one wheel. Nothing is checked here.
 
     Examples
     --------
@@ -58,22 +73,23 @@ def mass_breakdown(
     >>> f"{m.total_kg:.2f} kg"
     '12.88 kg'
     """
-    per_wheel = (wheel_areal_density_kg_m2 * 2 * np.pi * wheel_radius_m * wheel_width_m          # rim, hub, spokes
-                 + grouser_count * wheel_width_m * grouser_height_m * grouser_thickness_m * grouser_density_kg_m3
-                 + wheel_web_factor * wheel_areal_density_kg_m2 * np.pi * wheel_radius_m ** 2)   # not the paper's
+    c = coefficients
+    per_wheel = (c.wheel_areal_density_kg_m2 * 2 * np.pi * wheel_radius_m * wheel_width_m        # rim, hub, spokes
+                 + grouser_count * wheel_width_m * grouser_height_m * c.grouser_thickness_m * c.grouser_density_kg_m3
+                 + c.wheel_web_factor * c.wheel_areal_density_kg_m2 * np.pi * wheel_radius_m ** 2)   # not the paper's
     wheels = wheel_count * per_wheel                                                             # eq. mass-wheels
     # eq. mass-motors
-    motors = wheel_count * (motor_base_mass_kg + motor_mass_per_torque_kg_nm * peak_wheel_torque_nm)
-    array = solar_areal_density_kg_m2 * solar_area_m2
-    battery = battery_capacity_wh / battery_specific_energy_wh_kg
-    avionics = avionics_base_mass_kg + avionics_mass_per_power_kg_w * avionics_power_w   # eq. mass-power-avionics
+    motors = wheel_count * (c.motor_base_mass_kg + c.motor_mass_per_torque_kg_nm * peak_wheel_torque_nm)
+    array = c.solar_areal_density_kg_m2 * solar_area_m2
+    battery = battery_capacity_wh / c.battery_specific_energy_wh_kg
+    avionics = c.avionics_base_mass_kg + c.avionics_mass_per_power_kg_w * avionics_power_w   # eq. mass-power-avionics
     rocker_bogie = np.equal(wheel_count, 6)
-    linkage = (linkage_base_mass_kg + linkage_chassis_fraction * chassis_mass_kg) * rocker_bogie
-    chassis = chassis_mass_kg + frame_mass_kg_m2 * track_ratio * np.square(wheelbase_m)     # not the paper's
+    linkage = (c.linkage_base_mass_kg + c.linkage_chassis_fraction * chassis_mass_kg) * rocker_bogie
+    chassis = chassis_mass_kg + c.frame_mass_kg_m2 * c.track_ratio * np.square(wheelbase_m)     # not the paper's
     subsystems = chassis + wheels + motors + array + battery + avionics + linkage        # eq. mass-subsystems
-    harness = harness_fraction * subsystems
-    thermal = thermal_control_fraction * (subsystems + harness)
+    harness = c.harness_fraction * subsystems
+    thermal = c.thermal_control_fraction * (subsystems + harness)
     dry = subsystems + harness + thermal                                                         # eq. mass-dry
-    growth = growth_fraction * dry
+    growth = c.growth_fraction * dry
     return MassBreakdown(chassis, wheels, motors, array, battery, avionics, linkage, harness, thermal, growth,
                          payload_mass_kg, dry + growth + payload_mass_kg)                        # eq. mass-total

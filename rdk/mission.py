@@ -10,19 +10,18 @@ night at the latitude. The range is what the energy allows under the duty cycle,
 """
 from dataclasses import dataclass
 from functools import partial
-from inspect import signature
 
 import numpy as np
 
 from . import stability, terramechanics, thermal
-from ._fields import Later, Record, described, require, together
+from ._fields import Later, Record, described, limits_of, require, together
 from ._march import TraverseLog, cruise_speed, shaped, traverse
 from .design import Design, Model, Scenario, warn_outside
-from .mass import MassBreakdown, mass_breakdown
+from .mass import MassBreakdown, MassCoefficients, mass_breakdown
 
 __all__ = ["MASS_COEFFICIENTS", "Performance", "TraverseLog", "cruise_speed", "evaluate", "mass_of"]
 
-MASS_COEFFICIENTS = tuple(n for n in signature(mass_breakdown).parameters if n in Model.__dataclass_fields__)
+MASS_COEFFICIENTS = tuple(limits_of(MassCoefficients))
 
 @dataclass(frozen=True)
 class Performance(Record):
@@ -134,8 +133,7 @@ def evaluate(design: Design, scenario: Scenario, *, model: Model = Model()) -> P
 
 def mass_of(design, scenario, model):
     """Mass breakdown of a design with the scenario's payload; raises nothing."""
-    return mass_breakdown(**design.numbers(), payload_mass_kg=scenario.payload_mass_kg,
-                          **{name: getattr(model, name) for name in MASS_COEFFICIENTS})
+    return mass_breakdown(**design.numbers(), payload_mass_kg=scenario.payload_mass_kg, coefficients=model)
 
 
 def _stance(design, mass, model):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import rdk
 from rdk import catalog
-from rdk.mass import mass_breakdown
+from rdk.mass import MassCoefficients, mass_breakdown
 
 CONSTANTS = {row["name"]: float(row["value"]) for row in catalog.rows("constants.csv")}
 TARGETS = {row["id"]: tuple(map(float, row["accept"].split("..")))
@@ -91,9 +91,8 @@ def test_line_items_add_up_and_agree_with_the_transcription(seed, payload, harne
     design = rdk.random_designs(4, seed=seed)
     sizes = design.numbers()
     del sizes["wheelbase_m"]
-    found = mass_breakdown(**sizes, payload_mass_kg=payload, harness_fraction=harness,
-                           thermal_control_fraction=control,
-                           growth_fraction=growth)
+    shares = MassCoefficients(harness_fraction=harness, thermal_control_fraction=control, growth_fraction=growth)
+    found = mass_breakdown(**sizes, payload_mass_kg=payload, coefficients=shares)
     np.testing.assert_allclose(sum(found.items.values()), found.total_kg, rtol=1e-13)       # rounding
     model = scalar.MODEL | {"harness_fraction": harness, "thermal_fraction": control,
                             "growth_fraction": growth}
@@ -111,12 +110,12 @@ def test_every_size_adds_mass(name):
 def test_scalar_array_and_broadcast_forms_agree():
     radius, count, growth = np.array([0.06, 0.1, 0.2]), np.array([[4], [6]]), np.array(0.1)
     found = mass_breakdown(**RASHID | {"wheel_radius_m": radius, "wheel_count": count},
-                           growth_fraction=growth)
+                           coefficients=MassCoefficients(growth_fraction=growth))
     assert found.shape == found.total_kg.shape == (2, 3) and found.motors_kg.shape == (2, 1)
     for i in range(2):
         for j in range(3):
             sizes = RASHID | {"wheel_radius_m": float(radius[j]), "wheel_count": int(count[i, 0])}
-            one = mass_breakdown(**sizes, growth_fraction=0.1)
+            one = mass_breakdown(**sizes, coefficients=MassCoefficients(growth_fraction=0.1))
             assert np.ndim(one.total_kg) == 0
             np.testing.assert_allclose(found.total_kg[i, j], one.total_kg, rtol=1e-15)  # the same operations
             np.testing.assert_allclose(found[i].total_kg[j], one.total_kg, rtol=1e-15)
