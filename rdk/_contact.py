@@ -144,8 +144,7 @@ def forces(theta_1, s, patch, rule=DRIVING):
 def entry_angle(patch, s, target, with_pull=0.0, rule=DRIVING):
     """Entry angle where F_z = target, or sqrt(F_z^2 + DP^2) = target in lanes with `with_pull` = 1; F_z and DP there.
 
-    NaN where there is none. Newton in log-log coordinates: the load is close to a power of the entry angle, so few
-    steps are needed. The forces come with the last one.
+    NaN where there is none. Newton in log-log coordinates, where the load is close to a line in the entry angle.
     """
     r, b, A, n = patch[:4]
     # Bekker's closed form for a smooth free-rolling wheel, z^(n + 1/2) = 3 W / ((3 - n) b k_eff sqrt(2 r)), starts it
@@ -303,13 +302,13 @@ def _inner_balance(patch, load, required, low, high, short, theta_end, rule):
     """Slip and entry angle of a balance between two ends of one sign; NaN where there is none.
 
     `short` lanes pull too little at both ends and may peak between them: theirs is the root below the peak. The others
-    pull too much and may dip: theirs is the root above the dip. Either way the pull falls with slip at one end (the
-    high one of `short` lanes), and steeply enough for what is missing there, which one evaluation shows.
+    pull too much and may dip: theirs is the root above the dip.
     """
     result = np.full((2, load.size), np.nan)
     arcs = Arcs(theta_end, np.where(short, high, low), patch, rule)
     (load_t, pull_t), (load_s, pull_s) = arcs.by_entry(), arcs.by_slip()
-    fall = pull_t * load_s / load_t - pull_s             # per unit of slip, steepest at the end of a single peak
+    # the pull falls with slip, per unit of it, and most at the end of a single peak: enough for what is missing there?
+    fall = pull_t * load_s / load_t - pull_s
     lane = np.flatnonzero(fall * (high - low) > np.abs(required - arcs.pull))
     if not lane.size:
         return result

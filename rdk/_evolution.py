@@ -48,7 +48,7 @@ def evolve(score, genes, random, generations, fixed):
         better = (new_violation < violation) | (new_violation == violation) & (new_objective < objective)
         even = (new_violation == violation) & (new_objective == objective)
         count = better.sum(1, keepdims=True)
-        sums = [(np.where(better, x, 0)).sum(1, keepdims=True) for x in (scale**2, scale, rate)]
+        sums = [np.where(better, x, 0).sum(1, keepdims=True) for x in (scale**2, scale, rate)]
         with np.errstate(invalid="ignore", divide="ignore"):
             scale_mean = np.where(count, 0.9 * scale_mean + 0.1 * sums[0] / sums[1], scale_mean)
             cross_mean = np.where(count, 0.9 * cross_mean + 0.1 * sums[2] / count, cross_mean)

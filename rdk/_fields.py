@@ -200,9 +200,13 @@ def limits_of(cls):
 def _picked(value, shape, index):
     """Lanes of a number, an array or a record of such; what is computed when it is first read stays for later."""
     if isinstance(value, Record):
-        return dataclasses.replace(value, **{
-            name: functools.partial(_picked_field, value, name, shape, index) if callable(vars(value).get(name))
-            else _picked_field(value, name, shape, index) for name in _names(type(value)) if name not in value.apart})
+        picked = {}
+        for name in _names(type(value)):
+            if callable(vars(value).get(name)):
+                picked[name] = functools.partial(_picked_field, value, name, shape, index)
+            elif name not in value.apart:
+                picked[name] = _picked_field(value, name, shape, index)
+        return dataclasses.replace(value, **picked)
     if isinstance(value, np.ndarray) and value.ndim:
         value = np.broadcast_to(value, shape)[index]
         return value if np.ndim(value) else value.item()

@@ -27,8 +27,8 @@ _SCENARIO = ("latitude_deg", "duration_earth_days", "slope_deg", "duty_cycle", "
 _ALIASES = {"n_wheels": "wheel_count"}                   # in the front files of the original release
 _PARTS = {"soil": Soil, "problem": Problem, "skyline": Skyline}                    # of a Scenario
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
-_KEYS = {"soils.csv": ("soil",), "scenarios.csv": ("scenario", "kind", "soil"),
-         "rovers.csv": ("rover", "use"), "studies.csv": ("scenario",)}
+_COLUMNS = {"soils.csv": ("soil", *limits_of(Soil)), "scenarios.csv": ("scenario", "kind", "soil", *_SCENARIO),
+            "rovers.csv": ("rover", "use", *DESIGN_SPACE), "studies.csv": ("scenario",)}
 
 
 @functools.cache
@@ -45,10 +45,10 @@ def _rows(file_name, folder):
         raise ValueError(f"{file_name} is damaged: {error}") from None
     if len(lines) < 2:
         raise ValueError(f"{file_name} is damaged: it needs a header and at least one row, has {len(lines)} lines")
-    for key in _KEYS.get(file_name, ()):
-        if key not in lines[0]:
+    for name in _COLUMNS.get(file_name, ()):
+        if name not in lines[0]:
             first = ",".join(lines[0])[:60]
-            raise ValueError(f"{file_name} is damaged: no column {key!r}; its first line is {first!r}")
+            raise ValueError(f"{file_name} is damaged: no column {name!r}; its first line is {first!r}")
     for i, line in enumerate(lines[1:], 2):
         if len(line) != len(lines[0]):
             raise ValueError(f"{file_name} is damaged: line {i} has {len(line)} values, the header {len(lines[0])}")
@@ -80,8 +80,6 @@ def _read(kind, row, names, file_name, label, **more):
     for name in names:
         try:
             values[name] = _float(row[name])
-        except KeyError:
-            raise ValueError(f"{file_name} is damaged: no column {name!r}") from None
         except ValueError:
             raise ValueError(f"{file_name} is damaged: {name} of {label!r} is {row[name]!r}, not a number") from None
     try:

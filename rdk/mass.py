@@ -64,14 +64,6 @@ def mass_breakdown(
     """Mass line items and total of a rover, for arguments of any shapes that broadcast.
 
     Sizes as in `Design`, the hub torque and the grousers those of one wheel. Nothing is checked here.
-
-    Examples
-    --------
-    >>> m = mass_breakdown(wheel_radius_m=0.1, wheel_width_m=0.08, grouser_height_m=0.015, grouser_count=14,
-    ...                    wheel_count=4, chassis_mass_kg=3.5, solar_area_m2=0.25, battery_capacity_wh=50,
-    ...                    avionics_power_w=15, peak_wheel_torque_nm=0.5, payload_mass_kg=1.5)
-    >>> f"{m.total_kg:.2f} kg"
-    '12.88 kg'
     """
     c = coefficients
     per_wheel = (c.wheel_areal_density_kg_m2 * 2 * np.pi * wheel_radius_m * wheel_width_m        # rim, hub, spokes

@@ -109,8 +109,8 @@ class _Search:
 
     def held(self, genes):
         """Whether each demand holds in each fresh draw of the inputs: (demands, draws, designs)."""
-        seed = self.seed + FRESH_SEED
-        return self.margins(genes, uncertain_inputs(self.scenario, draws=FRESH_DRAWS, seed=seed, model=self.model)) >= 0
+        changes = uncertain_inputs(self.scenario, draws=FRESH_DRAWS, seed=self.seed + FRESH_SEED, model=self.model)
+        return self.margins(genes, changes) >= 0
 
     def stages(self, known=None):
         """Yield (genes, objective, violation), each by population, after every generation."""
@@ -172,15 +172,16 @@ class _Search:
                 break
         return state
 
-    @property
-    def generations(self):
-        """How many generations at most."""
-        return GENERATIONS + (sum(stage[2] for stage in STAGES.values()) if self.confidence else 0)
-
     def met(self, demands):
         """Whether some design meets these of the demands at the nominal values."""
         search = dataclasses.replace(self, demands=tuple(demands), confidence=None)
         return any(violation.min() == 0 for *_, violation in search.stages())
+
+    def best(self, known):
+        """Least objective that is found, inf where nothing meets the demands, and the population that has it."""
+        *_, (genes, objective, violation) = self.stages(known)
+        least = np.where(violation[:, 0] > 0, np.inf, objective[:, 0])
+        return least.min(), genes[least.argmin()]
 
 
 # ---- the result -----------------------------------------------------------------------------------------------
@@ -230,13 +231,13 @@ class Sizing(Shown):
         """
         search = dataclasses.replace(self.search, confidence=None)
         steps = PRICE_STEP * search.scales
-        base, known = _best(search, self.population)     # as long a search as each that it is compared with
+        base, known = search.best(self.population)       # as long a search as each that it is compared with
         found = np.full(len(steps), np.inf)
         for i in np.flatnonzero(~search.flags):
             demand = search.demands[i]
             limit = demand.limit + steps[i] * (1 if demand.sign == ">=" else -1)
             harder = (*search.demands[:i], demand._replace(limit=limit), *search.demands[i + 1:])
-            found[i], _ = _best(dataclasses.replace(search, demands=harder), known)
+            found[i], _ = dataclasses.replace(search, demands=harder).best(known)
         least = min([base, *found])                      # what meets more meets this too
         costs = found - least if least < math.inf else found
         frame, unit = self.demands, "kg" if search.minimise.endswith("_kg") else search.minimise
@@ -266,13 +267,6 @@ class Sizing(Shown):
         goal = f"{self.search.minimise} {getattr(self.performance, self.search.minimise):.4g}"
         heading = f"Sizing: {goal}; held by {', '.join(self.binding) or 'nothing'}. {self.message}".strip()
         return heading, pd.DataFrame([self.design.numbers()], [""]).T
-
-
-def _best(search, known):
-    """Least objective that a search finds, inf where nothing meets the demands, and the population that has it."""
-    *_, (genes, objective, violation) = search.stages(known)
-    least = np.where(violation[:, 0] > 0, np.inf, objective[:, 0])
-    return least.min(), genes[least.argmin()]
 
 
 def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confidence: float | None = None,
@@ -312,15 +306,16 @@ def size(scenario: Scenario, demands, *, minimise: str = "total_mass_kg", confid
     seed = whole("seed", seed)
     asked = checked(demands, "demands", scenario, may_contradict=True)
     search = _Search(scenario, asked, minimise, confidence, model, bounds, seed)
+    most = GENERATIONS + (sum(stage[2] for stage in STAGES.values()) if confidence else 0)
     for done, (genes, objective, violation) in enumerate(search.stages(), 1):
         near = violation <= violation.min() + (NEARLY if confidence and violation.min() > 0 else 0)
         best, which = np.unravel_index(np.where(near, objective, np.inf).argmin(), near.shape)
         design = decode(genes[best, [which]], bounds)[0]
-        stopped = on_generation is not None and on_generation(Progress(done, search.generations, design))
+        stopped = on_generation is not None and on_generation(Progress(done, most, design))
         if stopped:
             break
     found = Sizing(design, evaluate(design, scenario, model=model), "", search, genes[best])
-    message = (f"stopped after generation {done} of {search.generations}" if stopped
+    message = (f"stopped after generation {done} of {most}" if stopped
                else _conflict(found) if violation.min() > 0 else "")
     return dataclasses.replace(found, message=message)
 

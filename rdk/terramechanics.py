@@ -23,6 +23,7 @@ from ._fields import Record, brief, check, described, in_rows, number, require, 
 SLIP_MIN, SLIP_MAX = -0.9, 0.95                          # where the slip balance is sought
 CAPABILITY_SLIP, CAPABILITY_LIMIT_DEG = 0.6, 35.0        # peak-pull convention; steepest slope reported
 KERNELS = {"paper": _contact, "imposed-arc": _arc}
+SINKAGE = {"carried": 2, "balance": 3, "climb": 3}       # its place among what a solver of a kernel finds
 TRANSITIONS = {"paper": (0.4, 0.2), "imposed-arc": (0.18, 0.32)}         # c_1 and c_2 (Wong & Reece 1967)
 
 
@@ -143,8 +144,7 @@ def wheel_forces(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, slip: Arr
     >>> f"{forces.drawbar_pull_n:.2f} N at {1000 * forces.sinkage_m:.1f} mm"
     '0.71 N at 5.7 mm'
     """
-    found = _solve("carried", wheel, soil, options, slip=slip, vertical_load_n=vertical_load_n)
-    return _reported(WheelForces(*found), options)
+    return WheelForces(*_solve("carried", wheel, soil, options, slip=slip, vertical_load_n=vertical_load_n))
 
 
 def slip_balance(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, required_pull_n: ArrayLike, *,
@@ -157,9 +157,8 @@ def slip_balance(wheel: Wheel, soil: Soil, vertical_load_n: ArrayLike, required_
     peaks inside the interval and meets the demand twice, the lower slip is the answer. Load (positive) and demand are
     those of one wheel.
     """
-    found = _solve("balance", wheel, soil, options, vertical_load_n=vertical_load_n, required_pull_n=required_pull_n,
-                   slip_min=slip_min, slip_max=slip_max)
-    return _reported(SlipBalance(*found), options)
+    return SlipBalance(*_solve("balance", wheel, soil, options, vertical_load_n=vertical_load_n,
+                               required_pull_n=required_pull_n, slip_min=slip_min, slip_max=slip_max))
 
 
 def slope_capability(wheel: Wheel, soil: Soil, weight_n: ArrayLike, *, capability_slip: ArrayLike = CAPABILITY_SLIP,
@@ -189,7 +188,7 @@ def climb(wheel: Wheel, soil: Soil, weight_n: ArrayLike, slope_deg: ArrayLike, *
 def climbed(wheel, soil, options, **arrays):
     """What `climb` returns; `options` may be a KernelOptions, such as a Model: then no number is checked again."""
     *balance, capability = _solve("climb", wheel, soil, options, **arrays)
-    return _reported(SlipBalance(*balance), options), capability
+    return SlipBalance(*balance), capability
 
 
 def contact_stress(wheel: Wheel, soil: Soil, entry_angle_rad: ArrayLike, slip: ArrayLike, angle_rad: ArrayLike, *,
@@ -238,13 +237,6 @@ _LIMITS = {"vertical_load_n": dict(above=0), "weight_n": dict(above=0), "slope_d
     name: dict(minimum=-1, maximum=1) for name in ("slip", "slip_min", "slip_max", "capability_slip")}
 
 
-def _reported(forces, options):
-    """Forces or balance with the sinkage as it is to be reported."""
-    scale = options.get("sinkage_scale", 1.0) if isinstance(options, dict) else options.sinkage_scale
-    sinkage = np.multiply(forces.sinkage_m, scale)
-    return forces._replace(sinkage_m=sinkage if sinkage.ndim else float(sinkage))
-
-
 def patch_of(wheel, soil, options, **arrays):
     """The patch and the arrays as flat lanes, and the shape to give back."""
     require(wheel=(wheel, Wheel), soil=(soil, Soil))
@@ -280,4 +272,6 @@ def _solve(solver, wheel, soil, options, **arrays):
         blocks = [slice(i, i + _contact.BLOCK) for i in range(0, count, _contact.BLOCK)]
         parts = [solve(_contact.Patch(*[row[block] for row in patch]), *lanes[:, block]) for block in blocks]
     joined = [(np.concatenate(part) if part[1:] else part[0]).reshape(shape) for part in zip(*parts)]
+    if solver in SINKAGE:
+        joined[SINKAGE[solver]] = joined[SINKAGE[solver]] * options.sinkage_scale
     return [a if shape else a.item() for a in joined]

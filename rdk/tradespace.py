@@ -253,8 +253,8 @@ def _merged(found, latest):
 
 def budget(population, generations):
     """Population, generations, and whether the search runs until it has converged."""
-    until = isinstance(generations, str) and generations == "converged"
-    if isinstance(generations, str) and not until:
+    until = isinstance(generations, str)
+    if until and generations != "converged":
         raise ValueError(f"generations must be a whole number, at least 1, or 'converged'; got {generations!r}")
     generations = MOST_GENERATIONS if until else whole("generations", generations, 1)
     population = (100 if until else 50) if population is None else population
