@@ -39,10 +39,10 @@ def named(name):
 
 def stuck(design, performance):
     """Why a single design does not drive: "soil", "torque", "traction", or "" where it does."""
-    if performance.buried:
-        return "soil"
+    if not performance.stalled:
+        return ""
     weak = performance.wheel_torque_nm > design.peak_wheel_torque_nm
-    return ("torque" if weak else "traction") if performance.stalled else ""
+    return "soil" if performance.buried else "torque" if weak else "traction"
 
 
 def binding(design, scenario, performance, *, model=Model()):
@@ -166,7 +166,7 @@ def limits(design, scenario, performance, *, model=Model()):
         "energy_balance_pct": (p.energy_balance_pct >= 0, "0 % or more"),
         "obstacle_capability_m": (p.obstacle_capability_m >= s.required_obstacle_height_m,
                                   f"{s.required_obstacle_height_m:g} m"),
-        "stalled": (not p.stalled and not p.buried, "must drive the slope"),
+        "stalled": (not p.stalled, "must drive the slope"),
         "thermal_survival": (p.thermal_survival, f"{p.cold_temperature_c:.0f} to {p.hot_temperature_c:.0f} °C, allowed "
                              f"{model.operating_temperature_min_c:g} to {model.operating_temperature_max_c:g}")}
 

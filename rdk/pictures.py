@@ -290,10 +290,7 @@ def wheel(result, design, scenario, model, size=SIZE):
 
 def fleet(result, rovers, size=SIZE, spans=None, ghosts=()):
     """Range against mass: this design, with its intervals, among published rovers on the same mission."""
-    masses, ranges, names = (np.asarray(v) for v in rovers)
-    order = {}
-    for *at, name in zip(masses.round(6).tolist(), ranges.round(6).tolist(), names.tolist()):
-        order.setdefault(tuple(at), []).append(name)     # rovers at one place share a name
+    masses, ranges, names = rovers
     here = result.total_mass_kg, result.range_km
     (x0, x1), (y0, y1) = spans or ((value, value) for value in here)
     spots = [*((other.total_mass_kg, other.range_km, name, "s b f" + cls[1], "dot", "l " + cls, 6)
@@ -305,7 +302,7 @@ def fleet(result, rovers, size=SIZE, spans=None, ghosts=()):
     x, y, left, right, low, high = axes.x(here[0]), axes.y(here[1]), *map(axes.x, (x0, x1)), *map(axes.y, (y0, y1))
     axes.add("path", "l c0 t", d=f"M{left:.1f} {y:.1f}H{right:.1f}M{x:.1f} {low:.1f}V{high:.1f}")
     axes.taken += [(left, y - 1, right, y + 1), (x - 1, high, x + 1, low)]
-    axes.spots(*((*at, ", ".join(found), "s", "square", "f1", 4) for at, found in order.items()), *spots)
+    axes.spots(*((*at, "s", "square", "f1", 4) for at in zip(masses.round(6), ranges.round(6), names)), *spots)
     axes.legend(("this design", "dot", "f0"), ("published rovers", "square", "f1", {"size": 4}))
     rest = ", ".join(f"{n} {r:.1f} km" for n, r in zip(names, ranges))
     return axes.picture(f"Range against mass: this design reaches {result.range_km:.2f} km with "
