@@ -53,24 +53,23 @@ def cards(a):
     low, high = a.model.operating_temperature_min_c, a.model.operating_temperature_max_c
     rows = (  # field, title, digits, requirement, its sign, words; whether it is met where the value does not say
         ("range_km", "Range", 1, far, ">=", f"asked: {far:g} km") if far > 0.1 else
-        ("range_km", "Range", 1, route, ">=", f"route of {route:g} km", "none" if result.range_km > 0 else False)
-        if np.isfinite(route) else ("range_km", "Range", 1, route, ">=", "no end of the route", "none"),
-        ("total_mass_kg", "Mass", 1, heaviest, "<=", f"at most {heaviest:.3g} kg") if np.isfinite(heaviest) else
-        ("total_mass_kg", "Mass", 1, heaviest, "<=", "with payload", "none"),
+        ("range_km", "Range", 1, route, ">=", "no end of the route") if np.isinf(route) else
+        ("range_km", "Range", 1, route, ">=", f"route of {route:g} km", "none" if result.range_km > 0 else False),
+        ("total_mass_kg", "Mass", 1, heaviest, "<=",
+         "with payload" if np.isinf(heaviest) else f"at most {heaviest:.3g} kg"),
         ("slope_capability_deg", "Slope", 1, slope, ">=", f"needs {slope:g}°", not (result.stalled or steep)),
         ("energy_balance_pct", "Energy", 0, 0.0, ">=", "needs 0 % or more"),
         ("cold_temperature_c", "Night", 0, low, ">=", f"noon {result.hot_temperature_c:.0f} °C; allowed {low:g} to "
          f"{high:g}".replace("-", "−"), bool(result.thermal_survival)))
     for name, title, digits, need, sign, note, *met in rows:
-        value = float(getattr(result, name))
-        span = () if spans is None else (float(spans.low[name]), float(spans.high[name]))
-        met = met[0] if met else bool(holds(result, (name, sign, need)))
-        risky = met is True and span and (span[0] < need if sign == ">=" else span[1] > need)
+        value, span = float(getattr(result, name)), (float(spans.low[name]), float(spans.high[name]))
+        met = met[0] if met else "none" if np.isinf(need) else bool(holds(result, (name, sign, need)))
+        risky = met is True and (span[0] < need if sign == ">=" else span[1] > need)
         status = "none" if met == "none" else "risk" if risky else "met" if met else "missed"
-        if span and name != "cold_temperature_c":
-            ends = ("|" * bool(clamp) for clamp in spans.clamped[name])      # the end is a limit
-            note = "{}{} – {}{} (90 %); {}".format(next(ends), *(words(end, digits) for end in span), next(ends), note)
-        if span and name == "slope_capability_deg" and 0 < spans.low["stalled"] < 1:
+        if name != "cold_temperature_c":
+            left, right = ("|" * bool(clamp) for clamp in spans.clamped[name])       # the end is a limit
+            note = f"{left}{words(span[0], digits)} – {words(span[1], digits)}{right} (90 %); {note}"
+        if name == "slope_capability_deg" and 0 < spans.low["stalled"] < 1:
             note += f"; {100 * spans.low['stalled']:.0f} % of draws stall"
         change = value - float(getattr(a.before or result, name))
         moved = words(change, digits, sign="+") if np.isfinite(change) and round(change, digits) else ""
@@ -85,13 +84,13 @@ def readings(a):
     needed = {name: ("✓ met: " if met else "✗ missed: ") + need for name, (met, need) in limits.items()}
     rows = []
     for name, digits in METRICS.items():
-        span = "" if a.spans is None else " to ".join(words(end[name], digits) for end in (a.spans.low, a.spans.high))
+        span = " to ".join(words(end[name], digits) for end in (a.spans.low, a.spans.high))
         rows.append((label(name)[0], words(float(getattr(a.result, name)), digits, label(name)[1]), span,
                      needed.get(name, "")))
     for title, name, other in (("drives the slope", "stalled", True),
                                ("survives heat and cold", "thermal_survival", False)):
-        share = "" if a.spans is None else f"in {100 * abs(other - a.spans.low[name]):.0f} % of draws"
-        rows.append((title, "yes" if getattr(a.result, name) != other else "no", share, needed[name]))
+        rows.append((title, "yes" if getattr(a.result, name) != other else "no",
+                     f"in {100 * abs(other - a.spans.low[name]):.0f} % of draws", needed[name]))
     return rows
 
 
@@ -99,11 +98,9 @@ def answer(a):
     """HTML of the verdict with its readings, and the rows of the table."""
     met, sentence = explain.verdict(a.design, a.scenario, a.result)
     shown, table = cards(a), readings(a)
-    odds = ""
-    if a.spans is not None:
-        share = 100 * float(a.spans.share(asked(a.scenario)))
-        more = any((metric, limit) != ("range_km", 0.1) for metric, _, limit in a.scenario.problem.constraints)
-        odds = f"{'Meets all demands' if more else 'Drives'} in {share:.0f} % of {DRAWS:,} draws."
+    share = 100 * float(a.spans.share(asked(a.scenario)))
+    more = any((metric, limit) != ("range_km", 0.1) for metric, _, limit in a.scenario.problem.constraints)
+    odds = f"{'Meets all demands' if more else 'Drives'} in {share:.0f} % of {DRAWS:,} draws."
     buttons = [(f"lever:{field}", f"{name} +10 %: {gain:+.2g} {unit}") for field, name, gain, unit in a.levers[:3]
                if gain > 0]
     head = a.binding.sentence

@@ -8,7 +8,6 @@ import base64
 import contextlib
 import html
 import json
-import math
 import os
 import threading
 import time
@@ -73,8 +72,8 @@ class Explorer(State):
         self._worker = ThreadPoolExecutor(1)             # awaited at exit: a daemon in compiled code would abort
         self._wanted = self._answered = self._last = None
         self._thread, self._stop, self._progress, self._status = None, threading.Event(), (0, 1), ""
-        self._heard, self._size, self._drawer, self._picture, self._shown = 0, (600, 380), ("", ""), "", ""
-        self._table, self._reading = [], ""
+        self._heard, self._acked, self._size = 0, 0, (600, 380)
+        self._picture, self._table, self._drawer, self._reading = "", [], ("", ""), ""
         self._kept = {"why": None, "odds": (None, None), "band": (None, None)}
         self._app = os.environ.get("SERVER_SOFTWARE", "").startswith("voila")
         super().__init__(catalog.rover(rover) if isinstance(rover, str) else rover,
@@ -143,18 +142,15 @@ class Explorer(State):
 
     def _read(self, verb, name):
         """Title and HTML of what a button gives to read; "close" gives nothing."""
-        def shown(text):
-            return f"<pre tabindex='0'>{html.escape(text)}</pre>"
-
         if verb == "save":
             data = base64.b64encode(self.file(name).encode()).decode()
             return "Saved", (f'<p><a data-deliver download="{name}" href="data:application/octet-stream;base64,{data}">'
                              f"{name}</a>: in the folder of your downloads.</p>")
         if verb == "python":
-            return "Python for what is shown", shown(self.python())
+            return "Python for what is shown", f"<pre tabindex='0'>{html.escape(self.python())}</pre>"
         if verb == "copied":
             what = "the address of this state" if self._app else "the state, for Explorer(state=...)"
-            return f"Copied: {what}", shown(self.link)
+            return f"Copied: {what}", f"<pre tabindex='0'>{html.escape(self.link)}</pre>"
         return ("Differences", self._differences()) if verb == "differences" else ("", "")
 
     def _repr_mimebundle_(self, **kwargs):
@@ -199,12 +195,12 @@ class Explorer(State):
         with self._lock:
             if not self._overtaken:
                 return
-            self._answered = self._wanted
-            now, heard, pinned, before = self.state, self._heard, self.pinned, self._before
-            (design, scenario, model), reference = self._now, self._reference
+            self._answered, self._acked = self._wanted, self._heard
+            now, pinned, before, reference = self.state, self.pinned, self._before, self._reference
+            design, scenario, model = self._now
         view = now["view"]
-        if view in SLOW or view != self._shown:
-            self._tell(heard, busy=True)
+        if view in SLOW:
+            self._tell(busy=True)
         try:
             result = self.result = evaluate(design, scenario, model=model)
             binding = self.binding = explain.binding(design, scenario, result, model=model)
@@ -212,13 +208,14 @@ class Explorer(State):
             levers = explain.levers(design, scenario, result, binding.key, model=model)
             ghosts = [(letter, cls, evaluate(other, scenario, model=model))
                       for (letter, cls, _), other in zip(page.PINS, pinned.values())]
+            spans = self.intervals or intervals(design, scenario, draws=answers.DRAWS, model=model)
             answer = answers.Answer(now, design, scenario, model, result, binding, levers, before, ghosts, reference,
-                                    self.intervals, False, self.front, self._kept)
+                                    spans, False, self.front, self._kept)
             self.parts["verdict"].value, self._table = answers.answer(answer)
             self.parts["side"].value = rover_picture(design, result, scenario, width=290)
             self.parts["tray"].value = page.tray(pinned, answers.against(answer))
             self._show(answer)
-            self._tell(heard, busy=self._overtaken)
+            self._tell()
             time.sleep(YIELD_S)
             if not self._overtaken:                      # intervals for the newest state alone
                 self.intervals = intervals(design, scenario, draws=answers.DRAWS, model=model)
@@ -229,11 +226,11 @@ class Explorer(State):
                 if view == "sweep" and not now["sweep_second"]:
                     self._kept["band"] = answers.band_of(answer, lambda: self._overtaken)
                     self._show(answer)
-                self._rate(answer, heard)
+                self._rate(answer)
         except Exception as error:                       # anything at all: the app must go on and say what happened
             self.error, self._picture = f"{type(error).__name__}: {error}", ""
             self.parts["picture"].value = f'<div role="alert">{html.escape(self.error)}</div>'
-            self._tell(heard)
+            self._tell()
 
     def _show(self, answer):
         """Draw the view, and beside it another where the page is wide."""
@@ -247,10 +244,10 @@ class Explorer(State):
         answer = answer._replace(front=self.front)
         size = (width - 14 * (len(names) - 1)) // len(names), height
         drawn = [answers.PICTURES[name](answer, size) for name in names]
-        self._picture, self._shown = drawn[0], view
+        self._picture = drawn[0]
         self.parts["picture"].value = f'<div class="rdk-pictures">{"".join(drawn)}</div>'
 
-    def _rate(self, answer, heard):
+    def _rate(self, answer):
         """The odds of the front's designs where they are its colour, some at a time; news come first."""
         front, demands = self.front, answers.asked(answer.scenario)
         if answer.now["view"] != "optimise" or answer.now["front_colour"] != ODDS or not front:
@@ -264,7 +261,7 @@ class Explorer(State):
                                    model=front.model).share(demands)
             self._status = f"odds of {np.isfinite(odds).sum()} of {len(front)} designs, by {answers.DRAWS:,} draws each"
             self._show(answer)
-            self._tell(heard, busy=self._overtaken)
+            self._tell()
 
     def _differences(self):
         """Table of the pinned designs beside the present one, on the present mission."""
@@ -278,20 +275,20 @@ class Explorer(State):
                 rows.append((field.label, *(f"{field.words(value)} {field.unit}" for value in values)))
         return page.table(("", *designs), rows)
 
-    def _tell(self, heard, busy=False):
-        """Send the values of all inputs and the small texts to the page; `heard` is the last event that is answered."""
+    def _tell(self, busy=False):
+        """Send the values of all inputs, the small texts, and which event is answered to the page."""
         with self._lock:
             now, m, running = self.state, self.scenario, self._thread is not None
             base = now | self._values(*self._base)
             numbers = {name: (f.position(now[name]), f.words(now[name]), 100 * f.position(base[name]) / f.positions,
                               int(now[name] != base[name])) for name, f in NUMBERS.items()}
-            route = "no limit" if math.isinf(m.traverse_limit_km) else f"{m.traverse_limit_km:g} km"
+            route = "no limit" if np.isinf(m.traverse_limit_km) else f"{m.traverse_limit_km:g} km"
             texts = {"mission": f"Mission: {place(m.latitude_deg)}, {m.slope_deg:g}°", "status": self._status,
                      "share": self.link, "summary": f"{place(m.latitude_deg)}, {m.duration_earth_days:g} days from "
                      f"{m.start_utc or 'sunrise'}, {m.slope_deg:g}° in {m.soil.name}; drives {100 * m.duty_cycle:g} % "
                      f"of the time, route {route}."}
-            told = {"ack": heard, "v": numbers, "c": {name: str(now[name]) for name in (*MENUS, "start_utc")},
-                    "t": texts, "p": (*self._progress, running), "busy": busy,
+            told = {"ack": self._acked, "v": numbers, "c": {name: str(now[name]) for name in (*MENUS, "start_utc")},
+                    "t": texts, "p": (*self._progress, running), "busy": busy or self._overtaken,
                     "off": {"undo": not self._past, "redo": not self._future, "run": running, "lightest": running,
                             "cancel": not running}}
             if self._reading in ("python", "differences"):           # they follow the state

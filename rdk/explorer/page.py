@@ -60,11 +60,15 @@ def more(heading, before=""):
     return f'<details class="rdk-more"><summary>more: {heading}</summary>{before}{group(heading)}</details>'
 
 
-def menu(name, words):
-    items = "".join(f'<option value="{escape(str(value))}">{escape(str(text))}</option>'
-                    for value, text in MENUS[name].items())
-    said, unseen = (f"<span>{words}</span>", "") if words else ("", f'aria-label="{name}"')
-    return f'<label class="rdk-menu">{said}<select data-in="{name}" {unseen}>{items}</select></label>'
+def menus(**names):
+    """Choices with their labels."""
+    found = ""
+    for name, words in names.items():
+        items = "".join(f'<option value="{escape(str(value))}">{escape(text)}</option>'
+                        for value, text in MENUS[name].items())
+        said, unseen = (f"<span>{words}</span>", "") if words else ("", f'aria-label="{name}"')
+        found += f'<label class="rdk-menu">{said}<select data-in="{name}" {unseen}>{items}</select></label>'
+    return found
 
 
 def segments(name, words):
@@ -79,30 +83,26 @@ def left():
         2026-11-26T12:00 brings the real sun; “none” the paper's, which rises at the start.</p>"""
     return f"""<nav role="tablist" aria-label="inputs"><button role="tab" data-tab="rover">Rover</button>
         <button role="tab" data-tab="mission"><span data-text="mission"></span></button></nav>
-        <section data-page="rover" aria-label="rover">{menu("rover", "")}{group("Wheels")}
+        <section data-page="rover" aria-label="rover">{menus(rover="")}{group("Wheels")}
         {segments("wheel_count", "wheels")}{group("Body")}{group("Power")}
-        {more("coefficients of the model", menu("preset", "Model"))}</section>
-        <section data-page="mission" aria-label="mission" hidden>{menu("mission", "")}
-        <p class="rdk-say" data-text="summary"></p>{group("Site")}{menu("soil", "soil")}
+        {more("coefficients of the model", menus(preset="Model"))}</section>
+        <section data-page="mission" aria-label="mission" hidden>{menus(mission="")}
+        <p class="rdk-say" data-text="summary"></p>{group("Site")}{menus(soil="soil")}
         {group("Work")}{group("Demands")}{segments("survive", "survival of heat and cold")}
         {more("array, speed limit")}
-        {more("site and date", menu("site", "site")
-              + menu("site_height_m", "array") + when)}
+        {more("site and date", menus(site="site", site_height_m="array") + when)}
         {more("numbers of the soil")}</section>"""
 
 
 def views():
-    def ask(**names):
-        return "".join(menu(name, words) for name, words in names.items())
-
     run = button("run", "Run search", 'class="rdk-main"') + button("cancel", "Cancel")
-    rest = (f'<div class="rdk-controls">{ask(solve_variable="solve")}{button("solve", "for the demands")}</div>'
-            f'<div class="rdk-controls">{ask(range_goal="range", mass_goal="mass", slope_goal="slope")}</div>')
-    panels = {"why": ask(why_metric="metric", baseline="against"),
-              "sweep": ask(sweep_metric="metric", sweep_first="along", sweep_second="and"),
+    rest = (f'<div class="rdk-controls">{menus(solve_variable="solve")}{button("solve", "for the demands")}</div>'
+            f'<div class="rdk-controls">{menus(range_goal="range", mass_goal="mass", slope_goal="slope")}</div>')
+    panels = {"why": menus(why_metric="metric", baseline="against"),
+              "sweep": menus(sweep_metric="metric", sweep_first="along", sweep_second="and"),
               "optimise": f"""{run}{segments("live", "search")}
         {button("lightest", "Lightest rover for the demands", 'title="with the demands of the mission page"')}
-        {ask(front_x="across", front_y="up", front_colour="colour")}
+        {menus(front_x="across", front_y="up", front_colour="colour")}
         <details class="rdk-more"><summary>more: solve for the demands, goals, size of the search</summary>
         <div class="rdk-over">{rest}{group("size of the search")}</div></details>
         <progress max="1" value="0" hidden aria-label="search"></progress>
@@ -134,7 +134,7 @@ def card(title, value, unit, status, note, change, at, interval, need, old):
         return f"{100 * ((v - low) / (high - low or 1) + 0.06) / 1.12:.1f}%"
 
     gauge = ""
-    if interval and not math.isnan(sum(interval)):
+    if not math.isnan(sum(interval)):
         gauge = f'<i class="s" style="left:{share(interval[0])};right:calc(100% - {share(interval[1])})"></i>'
     for mark, v in ("p", at), ("r", need):
         if math.isfinite(v):

@@ -1,20 +1,17 @@
 """The explorer's state: a rover, a mission, a model and what else is chosen; its past, pins, link and files."""
 import contextlib
-import functools
 import math
 import threading
 from urllib.parse import parse_qsl, urlencode
 
-import numpy as np
-
 from .. import catalog, explain
-from ..design import DESIGN_SPACE, Model, Problem
+from ..design import Model, Problem
 from ..mission import evaluate
 from ..report import report
 from ..sampling import replaced, single
 from ..tradespace import Front
 from . import answers
-from .inputs import COEFFICIENTS, DEMANDS, DESIGN, GOALS, MENUS, NONE, NUMBERS, OWN, SKY, check, title
+from .inputs import COEFFICIENTS, DEMANDS, DESIGN, GOALS, MENUS, MISSION, NONE, NUMBERS, OWN, SKY, SOIL, check, title
 from .page import PINS, SAVES
 
 PAST = 200                                               # states that undo remembers
@@ -24,7 +21,6 @@ CHOSEN = {"view": "log", "baseline": "MoonRanger", "why_metric": "range_km", "sw
           "front_colour": "range_km", "live": False, "solve_variable": "wheel_radius_m", "population": 50,
           "generations": 60, "seed": 13, "site_height_m": 2}
 ENGINEERING = Model.engineering()
-skyline = functools.cache(catalog.skyline)
 
 
 class State:
@@ -58,8 +54,8 @@ class State:
         limits = {(metric, sign): limit for metric, sign, limit in mission.problem.constraints}
         site, height = self._site(mission)
         coefficients = {name: getattr(model, name) for name in COEFFICIENTS}
-        numbers = {**design.numbers(), **mission.numbers(), **mission.soil.numbers(), **coefficients}
-        return {**{name: numbers[name] for name in ("wheel_count", *NUMBERS) if name in numbers},
+        records = (design, ("wheel_count", *DESIGN)), (mission, MISSION), (mission.soil, SOIL)
+        return {**{name: getattr(record, name) for record, names in records for name in names}, **coefficients,
                 **{name: limits.get((metric, sign), 0 if sign == ">=" else math.inf)
                    for name, (metric, sign) in DEMANDS.items()},
                 **{goal: mission.problem.objectives.get(metric, "ignore") for goal, metric in GOALS.items()},
@@ -196,7 +192,7 @@ class State:
             self._show_mission(skyline=None)
             if site != NONE:
                 self._assign("latitude_deg", sites[site]["latitude_deg"])
-                self._show_mission(skyline=skyline(site, self._chosen["site_height_m"]),
+                self._show_mission(skyline=catalog.skyline(site, self._chosen["site_height_m"]),
                                    longitude_deg=sites[site]["longitude_deg"])
         else:
             noon = 0.0 if mission.latitude_deg < 0 else 180.0
@@ -279,10 +275,8 @@ class State:
             if design.shape:
                 note += f": {len(design)} designs, shown under Optimise; the first is on the sliders"
                 where = (mission or self.scenario).replace(problem=Problem())
-                design = design.replace(**{n: np.clip(getattr(design, n), v.low, v.high)
-                                           for n, v in DESIGN_SPACE.items()})
-                self.front, self._recipe = Front(design, evaluate(design, where, model=self.model), where, self.model,
-                                                 Problem()), None
+                result = evaluate(design, where, model=self.model)
+                self.front, self._recipe = Front(design, result, where, self.model, Problem()), None
                 design = design[0]
             self._put(design, mission, note)
 
