@@ -266,10 +266,7 @@ def _solve(solver, wheel, soil, options, **arrays):
     patch, lanes, shape = patch_of(wheel, soil, options, **arrays)
     solve, count = solver if callable(solver) else getattr(KERNELS[options.kernel], solver), lanes.shape[1]
     with np.errstate(all="ignore"):                      # a lane without a solution is NaN, not a warning
-        if not count:                                    # nothing to solve: one lane of ones shows the kinds
-            ones = np.ones((len(patch) + len(lanes), 1))
-            return [np.empty(shape, a.dtype) for a in solve(_contact.Patch(*ones[:len(patch)]), *ones[len(patch):])]
-        blocks = [slice(i, i + _contact.BLOCK) for i in range(0, count, _contact.BLOCK)]
+        blocks = [slice(i, i + _contact.BLOCK) for i in range(0, max(count, 1), _contact.BLOCK)]
         parts = [solve(_contact.Patch(*[row[block] for row in patch]), *lanes[:, block]) for block in blocks]
     joined = [(np.concatenate(part) if part[1:] else part[0]).reshape(shape) for part in zip(*parts)]
     if solver in SINKAGE:
