@@ -18,10 +18,7 @@ STYLE = {"figure.figsize": (6.4, 3.8), "figure.dpi": 100, "font.size": 10, "axes
 
 
 def panels(rows=1, columns=1, *, figure=None, **options):
-    """A figure in the collection's style, and its axes; `options` go to `matplotlib.pyplot.subplots`.
-
-    Draws into `figure`, such as that of a live picture, or into a new pyplot figure.
-    """
+    """A `figure`, or a new one of pyplot, in one style, and its axes; `options` go to `matplotlib.pyplot.subplots`."""
     with plt.rc_context(STYLE):
         if figure is None:
             return plt.subplots(rows, columns, layout="constrained", **options)

@@ -131,10 +131,9 @@ def report(design, scenario, title="", notes="", *, front=None, baseline=None, b
     notes = [part for part in notes.split("\n\n") if part.strip()]
     return PAGE.substitute(
         title=_text(title or f"A rover for {scenario.name}"), mission=_text(_mission_words(scenario)),
-        mark=" missed" * bool(missed),
         verdict=_text(f"{verdict} All hold at once in {100 * odds[0]:.0f} % of the draws."),
         binds=_text(explain.binding(design, scenario, result, model=model).sentence),
-        rover=rover_picture(design, result, scenario, width=250),
+        mark=" missed" * bool(missed), rover=rover_picture(design, result, scenario, width=250),
         design=_table("variable;value;allowed", [
             (outside[name], v.label, f"{getattr(design, name):.4g} {v.unit if v.unit != '1' else ''}".rstrip(),
              f"{limits[name][0]:g} to {limits[name][1]:g}" + ", outside" * outside[name])
