@@ -163,10 +163,7 @@ def rover(name: str) -> Design:
 
 @functools.cache
 def skyline_sites() -> dict[str, dict]:
-    """The sites that `skyline` knows, with what is known of each.
-
-    By name: label, latitude_deg, longitude_deg, ground_height_m, map_step_m and heights_m (above ground).
-    """
+    """The sites of `skyline`, each with label, latitude_deg, longitude_deg, ground_height_m, map_step_m, heights_m."""
     found = {}
     for row in _rows("skyline_sites.csv", DATA):
         numbers = ("latitude_deg", "longitude_deg", "ground_height_m", "map_step_m")
@@ -309,10 +306,7 @@ def built(kind, values):
 
 
 def to_csv(design: Design, performance: Record | None = None) -> str:
-    """CSV text: one row a lane, the design's variables first, then its performance if given.
-
-    The performance may be on several missions: it broadcasts with the design.
-    """
+    """CSV text: one row a lane, the design's variables first, then its performance, perhaps on several missions."""
     require(design=(design, Design), **{} if performance is None else {"performance": (performance, Record)})
     columns = design.numbers() | ({} if performance is None else performance.numbers())
     shape = together(design=design.shape, performance=() if performance is None else performance.shape)

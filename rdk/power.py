@@ -77,12 +77,11 @@ def march_battery(net_power_w: np.ndarray, time_step_h: Real, capacity_wh: Real,
     floor = np.broadcast_to(np.asarray(soc_floor) * capacity_wh, lanes)
     full = np.broadcast_to(np.asarray(capacity_wh, float), lanes)
     stored = np.minimum(np.maximum(np.asarray(soc_initial) * capacity_wh, floor), full)
-    add, minimum, maximum = np.add, np.minimum, np.maximum
     if energy[0].size > FEW:
         for step in energy:                              # a running clamp: the one loop over time there is
-            add(step, stored, out=step)
-            maximum(step, floor, out=step)
-            minimum(step, full, out=step)
+            np.add(step, stored, out=step)
+            np.maximum(step, floor, out=step)
+            np.minimum(step, full, out=step)
             stored = step
         return energy
     # while no lane's power changes its sign, a sum that has passed a bound stays beyond it: it is clamped afterwards
@@ -91,8 +90,8 @@ def march_battery(net_power_w: np.ndarray, time_step_h: Real, capacity_wh: Real,
     for start, end in pairwise([0, *turns.tolist(), len(energy)]):
         steps = energy[start:end]
         steps[:1] += stored
-        add.accumulate(steps, out=steps)
-        maximum(steps, floor, out=steps)
-        minimum(steps, full, out=steps)
+        np.add.accumulate(steps, out=steps)
+        np.maximum(steps, floor, out=steps)
+        np.minimum(steps, full, out=steps)
         stored = steps[-1]
     return energy

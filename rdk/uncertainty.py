@@ -18,7 +18,6 @@ def uncertain_inputs(scenario: Scenario, *, draws: int = DRAWS, seed: int = 0, m
     """Random soils and model coefficients around a scenario's and a model's, by field name; to pass to `replaced`.
 
     The first `draws` points of a scrambled Sobol sequence, its columns shuffled among the inputs, through `inputs_at`.
-    Same seed, same bits.
     """
     from scipy.stats import qmc
     draws = whole("draws", draws, 1)
