@@ -11,6 +11,7 @@ from string import Template
 import numpy as np
 
 from . import catalog, explain, pictures
+from .catalog import write
 from .design import DESIGN_SPACE, Design, Model
 from .mission import evaluate
 from .rover_picture import rover_picture
@@ -154,7 +155,7 @@ def report(design, scenario, title="", notes="", *, front=None, baseline=None, b
 
 def write_report(design, scenario, path, title="", notes="", **options):
     """Write the page of `report` to an HTML file; `options` go to `report`. Returns the path."""
-    return catalog.write(report(design, scenario, title, notes, **options), path)
+    return write(report(design, scenario, title, notes, **options), path)
 
 
 _text = functools.partial(html.escape, quote=False)

@@ -15,10 +15,9 @@ import pytest
 
 import rdk
 from rdk import catalog, pictures, sky
-from rdk.catalog import write
 from exercises.capstone import SWIRL
 from rdk.design import Problem
-from rdk.report import report, requirements
+from rdk.report import report, requirements, write
 
 MARE = rdk.scenario("equatorial_mare_traverse")
 RASHID = rdk.rover("Rashid-1")
