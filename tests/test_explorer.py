@@ -226,8 +226,8 @@ def test_what_lies_beyond_the_sliders_is_cut_and_said():
     soil = dataclasses.replace(rdk.soil("fjs-1"), friction_angle_deg=33.0)
     mission = rdk.Scenario(name="Ba$$in <1>", latitude_deg=5, soil=soil, duration_earth_days=3.25, slope_deg=4,
                            duty_cycle=0.1,
-                           panel_azimuth_deg=90, problem=Problem(constraints=(("sinkage_m", "<=", 0.05),
-                                                                              ("range_km", ">=", 3))))
+                           panel_azimuth_deg=90, problem=Problem(constraints=(
+                               ("sinkage_m", "<=", 0.05), ("range_km", ">=", 3), ("energy_balance_pct", ">=", 0))))
     explorer = Explorer(design, mission)
     said = shown(explorer, "drawer")
     assert "radius 300 cut to 200 mm" in said and "battery 1 cut to 5 Wh" in said
@@ -242,7 +242,10 @@ def test_what_lies_beyond_the_sliders_is_cut_and_said():
     page = explorer.file("report.html")
     assert "Ba$$in &lt;1&gt;" in page and "<1>" not in page
     explorer.set(minimum_range_km=7)
-    assert explorer.scenario.problem.constraints == (("range_km", ">=", 7), ("sinkage_m", "<=", 0.05))
+    kept = ("sinkage_m", "<=", 0.05), ("energy_balance_pct", ">=", 0)
+    assert explorer.scenario.problem.constraints == (("range_km", ">=", 7), *kept)
+    explorer.set(minimum_range_km=0)
+    assert explorer.scenario.problem.constraints == kept
 
 
 def test_the_array_follows_the_noon_sun_until_it_is_turned(explorer):
@@ -980,6 +983,18 @@ def test_a_kept_front_comes_back(explorer, name):
     assert explorer.design == front.designs[0] and len(explorer.front) == len(front) == len(dots(explorer))
     np.testing.assert_allclose(explorer.front.performance.range_km, front.performance.range_km, rtol=1e-12)
     assert explorer.file(name) == kept and "pareto_front" not in explorer.python()
+
+
+def test_a_front_from_beyond_the_sliders_is_shown_as_it_is_and_cut_when_picked(explorer):
+    designs = rdk.random_designs(3, seed=1).replace(wheel_radius_m=[0.3, 0.1, 0.25])
+    with pytest.warns(UserWarning, match="wheel_radius_m"):
+        explorer.load("front.csv", catalog.to_csv(designs))
+        explorer.settle()
+    assert explorer.front.designs == designs and explorer.design.wheel_radius_m == 0.2
+    assert "3 designs" in shown(explorer, "drawer") and "radius 300 cut to 200 mm" in shown(explorer, "drawer")
+    events(explorer, ["do", "point:2"])
+    assert explorer.design.wheel_radius_m == 0.2 and "radius 250 cut to 200 mm" in shown(explorer, "drawer")
+    assert_current(explorer)
 
 
 def test_files_are_delivered_to_the_page(explorer):

@@ -43,8 +43,6 @@ def fits(front, scenario, model):
         front.scenario.replace(name="") == scenario.replace(name="", problem=front.scenario.problem))
 
 
-# ---- readings -------------------------------------------------------------------------------------------------
-
 def cards(a):
     result, spans, drawn = a.result, a.spans, []
     far, route, heaviest = (a.now[name] for name in ("minimum_range_km", "traverse_limit_km", "maximum_mass_kg"))

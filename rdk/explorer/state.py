@@ -242,8 +242,6 @@ class State:
                         wrong.append(f"{name}={found[name]}: {error}")
             self._notice = ("alert" if wrong else "status", "; ".join(wrong))
 
-    # ---- files ------------------------------------------------------------------------------------------------
-
     def file(self, name):
         """The text of a file: design.json, design.csv, front.json, front.csv, picture.svg or report.html."""
         if name not in SAVES:
