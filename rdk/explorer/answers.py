@@ -227,20 +227,17 @@ PICTURES = {
 
 
 def solved(design, scenario, model, name):
-    """The nearest value of one variable at which a design drives and meets every demand, and a sentence.
-
-    The value is None where no value does, in which case the sentence says which demands stand in the way.
-    """
+    """The nearest value of one variable that meets every demand; a ValueError says which stand in the way of all."""
     f = NUMBERS[name]
     values = np.unique(np.append(span_of(name, 400), getattr(design, name)))
     *changed, _ = replaced(design, scenario, model, {name: values})
     found = evaluate(*changed, model=model)
     met = meets(found, asked(scenario))
     if met.any():
-        best = values[met][np.abs(np.log((values[met] + 1e-3) / (getattr(design, name) + 1e-3))).argmin()]
-        return float(best), f"{f.label} of {f.words(float(f'{best:.4g}'))} {f.unit} meets the demands"
+        far = np.abs(np.log((values[met] + 1e-3) / (getattr(design, name) + 1e-3)))
+        return float(values[met][far.argmin()])
     apart = [f"{label(metric)[0]} {'≥' if sign == '>=' else '≤'} {limit:g}"
              for metric, sign, limit in scenario.problem.constraints
              if not (found.feasible & holds(found, (metric, sign, limit))).any()]
-    return None, (f"no {f.label} from {f.words(f.low)} to {f.words(f.high)} {f.unit} meets the demands"
-                  + ": " * bool(apart) + ", ".join(apart))
+    raise ValueError(f"no {f.label} from {f.words(f.low)} to {f.words(f.high)} {f.unit} meets the demands"
+                     + ": " * bool(apart) + ", ".join(apart))

@@ -367,9 +367,9 @@ class Explorer(State):
             self.settle()
 
     def solve(self, name):
-        """Move one design variable to the nearest value that meets the demands; a notice says what came of it."""
-        value, said = answers.solved(*self._now, check("solve_variable", name))
-        if value is not None:
+        """Move one design variable to the nearest value that meets the demands; a ValueError where none does."""
+        with self._lock:
+            value, field = answers.solved(*self._now, check("solve_variable", name)), NUMBERS[name]
             self.set(**{name: value})
-        self._notice = ("alert" if value is None else "status", said)
-        self._poke()
+            said = f"{field.label} of {field.words(float(f'{value:.4g}'))} {field.unit} meets the demands"
+            self._notice = ("status", said)
