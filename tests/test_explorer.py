@@ -198,6 +198,7 @@ def test_a_typed_text_that_is_no_number_is_refused_in_words(explorer, text):
     ({"slope_deg": "5"}, "slope_deg must be at least 0 and at most 35 and finite; got '5'"),
     ({"grouser_count": 2.5}, "grouser_count must be a whole number, at least 0 and at most 24; got 2.5"),
     ({"soil": "mud"}, "soil must be one of fjs-1, "), ({"wheel_count": 5}, "wheel_count must be one of 4, 6"),
+    ({"wheel_count": [4, 6]}, "wheel_count must be one of 4, 6; got [4, 6]"),
     ({"view": "x"}, "view must be one of log, "), ({"traverse_limit_km": -1}, "km must be zero or more; got -1")])
 def test_set_names_what_is_wrong_and_what_is_allowed(explorer, values, words):
     before = dict(explorer.state)
@@ -299,7 +300,7 @@ def test_undo_redo_and_reset(explorer):
 def test_what_changes_nothing_is_no_step(explorer):
     events(explorer, ["set", "wheel_radius_m", "130"])
     events(explorer, ["set", "wheel_radius_m", "130"])  # a box that is left says its number again
-    explorer.set(mission=MARE, wheel_count=4)
+    explorer.set(mission=MARE, wheel_count=4.0, survive=False, live="False")     # numbers and flags, however written
     gain = explorer.result.total_mass_kg - rdk.evaluate(rdk.rover("Rashid-1"), explorer.scenario).total_mass_kg
     assert len(explorer._past) == 1 and f"{gain:+.1f}" in shown(explorer)
     explorer.undo()

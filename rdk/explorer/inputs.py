@@ -3,6 +3,8 @@ import math
 import re
 from typing import NamedTuple
 
+import numpy as np
+
 from .. import _fields, catalog, pictures
 from ..design import DESIGN_SPACE
 from ..sky import julian_date
@@ -142,10 +144,10 @@ MENUS = {  # name -> value -> words
 def check(name, value):
     """The value of an input set from Python, or a ValueError that says what is allowed."""
     if name in MENUS:
-        known = {str(choice): choice for choice in MENUS[name]}
-        if str(value) not in known:
-            raise ValueError(f"{name} must be one of {', '.join(known)}; got {value!r}")
-        return known[str(value)]
+        known = {key: choice for choice in MENUS[name] for key in (choice, str(choice))}
+        if np.ndim(value) or value not in known:
+            raise ValueError(f"{name} must be one of {', '.join(map(str, MENUS[name]))}; got {value!r}")
+        return known[value]
     if name == "start_utc":
         text = str(value).strip()
         if text.lower() in ("", NONE):
