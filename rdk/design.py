@@ -170,7 +170,9 @@ class Scenario(Record):
                                  f"got {self.start_utc!r}") from None
         if self.skyline is not None:
             object.__setattr__(self, "skyline", Skyline.of(self.skyline))
-        require(soil=(self.soil, Soil), problem=(self.problem, Problem))
+        if not isinstance(self.soil, Soil):
+            raise ValueError(f"soil must be a Soil, such as {Soil.example}; got {self.soil!r:.80}")
+        require(problem=(self.problem, Problem))
         super().__post_init__()
 
 

@@ -73,7 +73,7 @@ def binding(design, scenario, performance, *, model=Model()):
         return Binding(key, sentences[key])
     gains = _gains(design, scenario, p, model)
     detail = "10 % more hub speed gives {:.1f} % more range, array {:.1f} %, battery {:.1f} %".format(*gains.values())
-    if p.log.throttled.any():
+    if p.log is not None and p.log.throttled.any():
         detail += f"; in {100 * p.log.throttled.mean():.0f} % of the hours the pack is empty and sunlight alone decides"
     paid = f"{p.energy_balance_speed_m_s:.1f} m/s" if p.energy_balance_speed_m_s < 10 else "far more"
     speed, key = f"{100 * p.cruise_speed_m_s:.1f} cm/s", max(gains, key=gains.get)
@@ -136,8 +136,10 @@ def verdict(design, scenario, performance):
     if not drive and p.range_km <= 0:
         drive = "Does not drive: no power or no time for it"
     elif not drive and p.range_km >= limit:
-        hour = p.log.time_h[np.argmax(p.log.distance_km >= limit * (1 - 1e-12))]
-        drive = f"Drives the whole route of {limit:g} km on day {hour / 24:.1f} of {scenario.duration_earth_days:g}"
+        drive = f"Drives the whole route of {limit:g} km"
+        if p.log is not None:                            # a lane of a population has none
+            hour = p.log.time_h[np.argmax(p.log.distance_km >= limit * (1 - 1e-12))]
+            drive += f" on day {hour / 24:.1f} of {scenario.duration_earth_days:g}"
     elif not drive:
         drive = f"Drives {p.range_km:.3g} km" if np.isinf(limit) else f"Drives {p.range_km:.3g} of {limit:g} km"
     bad = [words for words, good in (

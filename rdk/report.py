@@ -131,10 +131,10 @@ def report(design, scenario, title="", notes="", *, front=None, baseline=None, b
     changed = [f"{name} = {value:g}" for name, value in model.numbers().items() if value != getattr(Model(), name)]
     notes = [part for part in notes.split("\n\n") if part.strip()]
     return PAGE.substitute(
-        title=_text(title or f"A rover for {scenario.name}"), mission=_text(_mission_words(scenario)),
+        title=_text(str(title or "").strip() or f"A rover for {scenario.name}"), mark=" missed" * bool(missed),
         verdict=_text(f"{verdict} All hold at once in {100 * odds[0]:.0f} % of the draws."),
         binds=_text(explain.binding(design, scenario, result, model=model).sentence),
-        mark=" missed" * bool(missed), rover=rover_picture(design, result, scenario, width=250),
+        mission=_text(_mission_words(scenario)), rover=rover_picture(design, result, scenario, width=250),
         design=_table("variable;value;allowed", [
             (outside[name], v.label, f"{getattr(design, name):.4g} {v.unit if v.unit != '1' else ''}".rstrip(),
              f"{limits[name][0]:g} to {limits[name][1]:g}" + ", outside" * outside[name])
@@ -158,7 +158,8 @@ def write_report(design, scenario, path, title="", notes="", **options):
     return write(report(design, scenario, title, notes, **options), path)
 
 
-_text = functools.partial(html.escape, quote=False)
+def _text(words):
+    return html.escape(str(words), quote=False)
 
 
 def _paragraphs(words):

@@ -106,7 +106,8 @@ def cheapest(terrain: Terrain, joule_per_m: Callable, start: tuple[int, int], go
         raise ValueError(f"detour must be one number or have the map's shape {height.shape}; got {np.shape(detour)}")
     detour = np.broadcast_to(detour, height.shape)
     for name, end in (("start", start), ("goal", goal)):
-        if np.shape(end) != (2,) or not all(i in range(n) for i, n in zip(end, height.shape)):
+        if not isinstance(end, (tuple, list, np.ndarray)) or len(end) != 2 or not all(
+                i in range(n) for i, n in zip(end, height.shape)):
             raise ValueError(f"{name} must be a cell (row, column) of the {rows} x {columns} map; got {end!r}")
     tilt, index = terrain.slope(), np.arange(rows * columns, dtype=np.int32).reshape(rows, columns)
     safe, edges = tilt <= tilt_limit_deg, []

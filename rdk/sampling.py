@@ -36,7 +36,9 @@ def demands(wanted, argument: str = "constraints", scenario: Scenario | None = N
 
 def holds(performance: Performance, demand: tuple) -> bool | np.ndarray:
     """Whether a demand such as ("range_km", ">=", 30) holds; not where the field is NaN."""
-    return Demand(*demand).slack(performance) >= 0
+    name, sign, limit = demand
+    value = np.asarray(getattr(performance, name), float)
+    return value >= limit if sign == ">=" else value <= limit
 
 
 # ---- designs and genes ----------------------------------------------------------------------------------------

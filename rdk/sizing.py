@@ -42,8 +42,6 @@ class Progress(NamedTuple):
     design: Design
 
 
-# ---- the search -----------------------------------------------------------------------------------------------
-
 @dataclasses.dataclass(frozen=True)
 class _Search:
     """What is asked of `size`, and how a population of genes does on it."""
@@ -183,8 +181,6 @@ class _Search:
         least = np.where(violation[:, 0] > 0, np.inf, objective[:, 0])
         return least.min(), genes[least.argmin()]
 
-
-# ---- the result -----------------------------------------------------------------------------------------------
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Sizing(Shown):

@@ -74,6 +74,8 @@ class Front(Shown):
             designs, scenario, model, problem = (
                 catalog.built(kind, kept[kind.__name__.lower()]) for kind in (Design, Scenario, Model, Problem))
             single(scenario=scenario, model=model)
+            if kept["format"] != "rdk-design-1" or len(designs.shape) != 1:
+                raise ValueError("it needs 'format': 'rdk-design-1' and a flat list of designs")
             history = tuple(np.array(F, float).reshape(len(F), len(problem.objectives))
                             for F in kept["objective_history"])
             return cls(designs, evaluate(designs, scenario, model=model), scenario, model, problem, history,
@@ -93,8 +95,6 @@ class Progress(NamedTuple):
     generations: int
     front: Callable[[], Front]
 
-
-# ---- dominance and hypervolume --------------------------------------------------------------------------------
 
 def minimised(performance: Performance, objectives: dict) -> np.ndarray:
     """Objectives as columns, shape (n, m), each with the sign that makes less better."""
@@ -137,8 +137,6 @@ def _gain(old, new, objectives, scenario):
         return _volume((new - new.min(0)) / scale) - _volume((old - new.min(0)) / scale)
     return hypervolume(new, objectives, scenario) - hypervolume(old, objectives, scenario)
 
-
-# ---- one front ------------------------------------------------------------------------------------------------
 
 def posed(scenario: Scenario, objectives=None, constraints=None, seed=None) -> tuple[Scenario, Problem]:
     """The scenario and the Problem that a search uses: the scenario's own problem, with what the caller changes."""

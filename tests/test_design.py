@@ -400,7 +400,7 @@ def test_a_problem_is_a_value_and_a_mission_takes_nothing_else():
     assert SCENARIO.replace(slope_deg=[1.0, 2.0], problem=asked)[1].problem == asked
     with pytest.raises(TypeError, match=r"problem must be a Problem, such as rdk.Problem\(\); got 'polar'"):
         SCENARIO.replace(problem="polar")
-    with pytest.raises(TypeError, match=r"soil must be a Soil, such as rdk.soil\('apollo-nominal'\); got 'apollo-nomi"):
+    with pytest.raises(ValueError, match=r"soil must be a Soil, such as rdk.soil\('apollo-nominal'\); got 'apollo"):
         SCENARIO.replace(soil="apollo-nominal")
 
 

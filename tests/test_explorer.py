@@ -412,6 +412,9 @@ def explained(design, mission):
     result = rdk.evaluate(design, mission)
     key, sentence, detail = explain.binding(design, mission, result)
     met, verdict = explain.verdict(design, mission, result)
+    lane = rdk.evaluate(rdk.Design.stack([design, design]), mission)[0]              # it has no log
+    assert explain.binding(design, mission, lane)[:2] == (key, sentence)
+    assert verdict.startswith(explain.verdict(design, mission, lane)[1].split(",")[0].rstrip("."))
     found = explain.levers(design, mission, result, key)
     assert not re.search(r"\bnan\b|\binf\b", sentence + detail + verdict + repr(found)) and sentence.endswith(".")
     assert result.stalled == (key in ("torque", "traction", "soil"))

@@ -176,6 +176,11 @@ def test_bad_arguments_are_named(change, words):
         report(**{"design": RASHID, "scenario": MARE, "title": "x", "draws": 20, **change})
 
 
+def test_candidates_may_be_named_by_anything():
+    page = report(RASHID, MARE, "x", draws=20, candidates={4: RASHID, 6: RASHID.replace(wheel_count=6)})
+    assert "<td>4</td>" in page and "<td>6</td>" in page
+
+
 def test_same_inputs_same_page():
     assert report(RASHID, MARE, "x", draws=20) == report(RASHID, MARE, "x", draws=20)
 
@@ -199,7 +204,7 @@ def test_writing_replaces_the_file_in_one_step(tmp_path, monkeypatch):
 
 
 def test_write_report_writes_the_page_of_report_and_names_a_folder_it_cannot_write(tmp_path):
-    path = rdk.write_report(RASHID, MARE, tmp_path / "page.html", draws=20)
+    path = rdk.write_report(RASHID, MARE, tmp_path / "page.html", " ", draws=20)
     assert path.read_text(encoding="utf-8") == report(RASHID, MARE, "A rover for equatorial_mare_traverse", draws=20)
     (tmp_path / "file").write_text("")
     for folder in "file", "missing":

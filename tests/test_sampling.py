@@ -36,6 +36,17 @@ def assert_same_metrics(performance, expected, **tolerance):
         np.testing.assert_allclose(value, getattr(expected, name), err_msg=name, **(tolerance or SAME))
 
 
+# ---- demands --------------------------------------------------------------------------------------------
+
+def test_a_demand_holds_at_its_limit_even_where_both_are_infinite_and_not_where_there_is_no_value():
+    late = rdk.evaluate(RASHID, MARE.replace(duty_cycle=[0.0, 1.0]))
+    assert np.isinf(late.arrival_h[0]) and np.isfinite(late.arrival_h[1])
+    assert sampling.holds(late, ("arrival_h", "<=", math.inf)).tolist() == [True, True]
+    assert sampling.holds(late, ("range_km", ">=", late.range_km[1])).tolist() == [False, True]
+    buried = rdk.evaluate(RASHID, MARE.replace(payload_mass_kg=1e5))
+    assert buried.buried and not any(sampling.holds(buried, ("sinkage_m", sign, 0.0)) for sign in ("<=", ">="))
+
+
 # ---- designs and genes ----------------------------------------------------------------------------------
 
 def assert_buildable(designs, bounds=None):

@@ -660,6 +660,9 @@ DAMAGES = {
     "no message": lambda text: json.dumps({k: v for k, v in json.loads(text).items() if k != "message"}),
     "impossible design": lambda text: text.replace('"wheel_radius_m": [', '"wheel_radius_m": [-'),
     "wrong history": lambda text: json.dumps(json.loads(text) | {"objective_history": [[[1.0]]]}),
+    "another format": lambda text: text.replace("rdk-design-1", "rdk-design-2"),
+    "a grid of designs": lambda text: json.dumps(json.loads(text) | {"design": {
+        name: [values] for name, values in json.loads(text)["design"].items()}}),
     "ragged": lambda text: text.replace('"wheel_radius_m": [', '"wheel_radius_m": [0.1, ')}
 
 

@@ -114,8 +114,6 @@ def against(a):
                        for metric in ("total_mass_kg", "range_km", "slope_capability_deg")) for *_, other in a.ghosts]
 
 
-# ---- pictures: each of an Answer and a size -------------------------------------------------------------------
-
 def spans(a, *names):
     """The intervals of some metrics; None while they are not those of this state."""
     return [(a.spans.low[name], a.spans.high[name]) for name in names] if a.sure else None
