@@ -209,6 +209,15 @@ def test_the_answer_is_in_sight(explorer):
         assert not explorer.evaluate(crowded), width     # the sign for help beside its slider, not on it
     explorer.locator(".rdk-tray").scroll_into_view_if_needed()               # far down on a phone
     assert 0 <= explorer.locator(".rdk-say1").bounding_box()["y"] < 50
+    explorer.get_by_role("button", name="pin the present design").click()
+    explorer.get_by_role("button", name="Table of differences").click()
+    drawer = explorer.locator(".rdk-drawer section")
+    drawer.wait_for()
+    page.wait_for_function("e => { const {top, bottom} = e.getBoundingClientRect();"
+                           " return top > 0 && bottom <= innerHeight; }", arg=drawer.element_handle())
+    drawer.get_by_role("button", name="Close").click()
+    explorer.get_by_role("button", name="remove A").click()
+    expect(explorer.get_by_role("button", name="remove A")).to_have_count(0)
 
 
 def test_by_keyboard_alone(explorer):

@@ -199,6 +199,7 @@ def test_a_typed_text_that_is_no_number_is_refused_in_words(explorer, text):
     ({"grouser_count": 2.5}, "grouser_count must be a whole number, at least 0 and at most 24; got 2.5"),
     ({"soil": "mud"}, "soil must be one of fjs-1, "), ({"wheel_count": 5}, "wheel_count must be one of 4, 6"),
     ({"wheel_count": [4, 6]}, "wheel_count must be one of 4, 6; got [4, 6]"),
+    ({"view": {}}, "view must be one of log, "),
     ({"view": "x"}, "view must be one of log, "), ({"traverse_limit_km": -1}, "km must be zero or more; got -1")])
 def test_set_names_what_is_wrong_and_what_is_allowed(explorer, values, words):
     before = dict(explorer.state)
@@ -366,6 +367,13 @@ def test_a_link_brings_everything_back(explorer):
     explorer.set(rover="Rashid-1", mission=POLAR, view="log", population=50, generations=60)
     explorer.set(hub_no_load_speed_rad_s=5.0)
     assert "wheel" not in explorer.link and "mission=polar_prospecting" in explorer.link
+    explorer.set(mission="highland_slope_capability")
+    explorer.undo()                                      # another mission's base, and its seed
+    assert Explorer(state=explorer.link).state == explorer.state and "slope_deg" not in explorer.link
+    explorer.set(mission=MARE, site="connecting_ridge_spot_1", panel_azimuth_deg=180.0)      # away from the noon sun
+    assert Explorer(state=explorer.link).scenario == explorer.scenario
+    explorer.set(site="none", start_utc="2026-12-01")    # with the site goes its longitude
+    assert Explorer(state=explorer.link).scenario == explorer.scenario and explorer.scenario.longitude_deg == 0
     wrong = Explorer(state="wheel_radius_m=0.12&wheel_width_m=7&soil=mud&nonsense=1")
     assert (wrong.design.wheel_radius_m, wrong.design.wheel_width_m) == (0.12, 0.08)
     assert "wheel_width_m must be" in shown(wrong, "drawer")

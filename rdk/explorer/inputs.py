@@ -145,7 +145,7 @@ def check(name, value):
     """The value of an input set from Python, or a ValueError that says what is allowed."""
     if name in MENUS:
         known = {key: choice for choice in MENUS[name] for key in (choice, str(choice))}
-        if np.ndim(value) or value not in known:
+        if not isinstance(value, (str, int, float, np.generic)) or value not in known:
             raise ValueError(f"{name} must be one of {', '.join(map(str, MENUS[name]))}; got {value!r}")
         return known[value]
     if name == "start_utc":

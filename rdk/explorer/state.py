@@ -77,14 +77,15 @@ class State:
     @property
     def link(self):
         """The state as a short text: the query of the app's address, and what `Explorer(state=...)` takes."""
-        (design, mission, _), names = self._base, self._values(*self._base)
-        if names["rover"] == OWN:                        # what has no name is told by what it differs in
-            design = self._rovers["Rashid-1"]
-        if names["mission"] == OWN:
-            mission = self._catalogue["equatorial_mare_traverse"]
+        now, names = self.state, self._values(*self._base)               # what has no name is told by what differs
+        rover, mission = (next(name for name in (now[key], names[key], other) if name != OWN) for key, other in (
+            ("rover", "Rashid-1"), ("mission", "equatorial_mare_traverse")))
+        design, mission = self._rovers[rover], self._catalogue[mission]
         base = CHOSEN | self._values(design, mission, Model()) | {"seed": mission.problem.seed or CHOSEN["seed"]}
         told = {name: base[name] for name in ("rover", "mission")}
-        return urlencode(told | {name: now for name, now in self.state.items() if now not in (base[name], OWN)})
+        if now["latitude_deg"] != base["latitude_deg"]:  # on the way back the array follows it
+            base["panel_azimuth_deg"] = None
+        return urlencode(told | {name: value for name, value in now.items() if value not in (base[name], OWN)})
 
     @contextlib.contextmanager
     def _step(self, drag=("", 0)):
@@ -189,7 +190,7 @@ class State:
             self._show_mission(start_utc=None if value == NONE else value)
         elif name in SKY:
             site = value if name == "site" else here
-            self._show_mission(skyline=None)
+            self._show_mission(skyline=None, longitude_deg=0.0)
             if site != NONE:
                 self._assign("latitude_deg", sites[site]["latitude_deg"])
                 self._show_mission(skyline=catalog.skyline(site, self._chosen["site_height_m"]),
@@ -200,7 +201,7 @@ class State:
                 mission = mission.replace(panel_azimuth_deg=0.0 if value < 0 else 180.0)     # follows the noon sun
             if name == "latitude_deg" and here in sites and value != mission.latitude_deg:
                 self._notice = ("status", "site set to none: its skyline holds at its own latitude only")
-                mission = mission.replace(skyline=None)
+                mission = mission.replace(skyline=None, longitude_deg=0.0)
             self._now = replaced(design, mission, model, {name: value})
             self._show_mission()
 
