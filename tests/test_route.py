@@ -183,6 +183,7 @@ def test_a_map_without_a_way_says_so():
 @pytest.mark.parametrize("change, words", [
     (dict(start=(6, 0)), "start must be a cell .* of the 6 x 8 map"), (dict(goal=(0, -1)), "goal must be a cell"),
     (dict(start=(0.5, 0)), "start must be a cell"), (dict(goal=3), "goal must be a cell"),
+    (dict(start=((1, 2), 3)), "start must be a cell"),
     (dict(detour=np.ones((2, 2))), r"detour must .* have the map's shape \(6, 8\)"),
     (dict(tilt_limit_deg=-1), "tilt_limit_deg"), (dict(edge_limit_deg="steep"), "edge_limit_deg"),
     (dict(detour=0.5), "detour must be at least 1"), (dict(joule_per_m=lambda s: s - 1), "must not be negative"),

@@ -10,7 +10,7 @@ from ..report import published
 from ..sampling import attribution, holds, replaced, sweep, uncertain_inputs
 from ..uncertainty import DRAWS
 from .inputs import METRICS, NUMBERS, label
-from .page import card, verdict
+from .page import button, card, verdict
 
 BAND_DRAWS, CURVE, MAP = 256, 61, 25                     # of the readings' draws the first; points of a sweep
 Answer = namedtuple("Answer", "now design scenario model result binding levers before ghosts reference spans sure "
@@ -200,8 +200,7 @@ def front(a, size):
     front = a.front
     if front is None:
         return (f'<div style="padding:60px 20px;text-align:center;width:{size[0] - 60}px">No front yet: designs that '
-                'no other beats in every goal.<br><br><button type="button" class="rdk-btn rdk-main" data-do="run">'
-                "Run search</button></div>")
+                'no other beats in every goal.<br><br>' + button("run", "Run search", 'class="rdk-main"') + "</div>")
     names = [a.now["front_" + key] for key in ("x", "y", "colour")]
     of, odds = a.kept["odds"]
     rated = odds if of == (front, asked(a.scenario)) else np.full(len(front), np.nan)
